@@ -1,0 +1,17 @@
+# Warnings, sanitizers and code generation, as an interface target that our own targets use and nothing exports.
+add_library(nephroid_options INTERFACE)
+target_compile_features(nephroid_options INTERFACE cxx_std_20)
+target_compile_options(
+  nephroid_options
+  INTERFACE -Wall -Wextra -Wpedantic -Wshadow -Wno-missing-field-initializers
+            # Contraction would let the compiler fuse differently per call site: results must not depend on inlining.
+            -ffp-contract=off
+            $<$<BOOL:${NEPHROID_WERROR}>:-Werror>)
+if(NEPHROID_ASSERTIONS)
+  target_compile_definitions(nephroid_options INTERFACE NEPHROID_ASSERTIONS)
+endif()
+if(NEPHROID_SANITIZE)
+  target_compile_options(nephroid_options INTERFACE -fsanitize=${NEPHROID_SANITIZE} -fno-omit-frame-pointer
+                                                    -fno-sanitize-recover=all)
+  target_link_options(nephroid_options INTERFACE -fsanitize=${NEPHROID_SANITIZE})
+endif()

@@ -1,0 +1,35 @@
+// What `nephroid bench` measures and how it tells it.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "techniques/technique.h"
+
+namespace nephroid::cli {
+
+/// One quantity, measured once per repetition.
+struct Measurement {
+  std::string name;  ///< "rays/s", "load"
+  std::string unit;  ///< "1/s", "s", "MiB", "" for a ratio
+  std::vector<double> values;
+};
+
+/// All that was measured of one scene with one technique.
+struct BenchResult {
+  std::string scene, technique;
+  std::vector<Measurement> measurements;
+};
+
+/// Middle value; the mean of the two middle ones of an even number. 0 of none.
+double computeMedian(std::vector<double> values);
+
+/// Half of the distance between the smallest and the largest value, relative to the median; 0 of fewer than two.
+double computeSpread(const std::vector<double>& values);
+
+/// Largest resident memory of this process since it was last reset, MiB; of its whole life where the system cannot
+/// reset it.
+double readPeakMemory();
+void resetPeakMemory();
+
+}  // namespace nephroid::cli

@@ -1,0 +1,36 @@
+// Help: one walk over the declared options makes `--help`, the manual page and the shell completion.
+#pragma once
+
+#include <CLI/CLI.hpp>
+
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace nephroid::cli {
+
+/// Options of one group, in the order of their declaration.
+struct OptionGroup {
+  std::string name;
+  std::vector<const CLI::Option*> options;
+};
+
+/// The options of `app` by group; positional arguments come first, as group "Arguments".
+std::vector<OptionGroup> groupOptions(const CLI::App& app);
+
+/// "-o, --output FILE".
+std::string formatFlags(const CLI::Option& option);
+
+/// A name and its description, wrapped and indented.
+std::string formatEntry(const std::string& name, const std::string& description);
+
+/// `text` broken at spaces into lines of at most `width` columns, each after `indent` spaces.
+std::string wrapText(std::string_view text, std::size_t indent, std::size_t width);
+
+/// What `nephroid --help` (for the root) or `nephroid COMMAND --help` prints.
+std::string formatHelp(const CLI::App& app);
+
+/// "nephroid render SCENE [options]".
+std::string formatUsage(const CLI::App& app);
+
+}  // namespace nephroid::cli

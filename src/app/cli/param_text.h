@@ -1,0 +1,17 @@
+// Parameters for people and for programs, from their one declaration.
+#pragma once
+
+#include <nlohmann/json.hpp>
+#include <span>
+#include <string>
+
+#include "core/params.h"
+
+namespace nephroid::cli {
+
+/// One line per parameter, indented: name, sentence, default, range, unit. "" for none.
+std::string formatParams(std::span<const ParamSpec> specs);
+
+nlohmann::ordered_json paramsToJson(std::span<const ParamSpec> specs);
+
+}  // namespace nephroid::cli

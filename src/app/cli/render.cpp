@@ -1,0 +1,234 @@
+// `nephroid render`: a scene in, pictures out.
+#include <fmt/format.h>
+
+#include <chrono>
+#include <filesystem>
+#include <nlohmann/json.hpp>
+#include <optional>
+
+#include "app/cli/command.h"
+#include "app/cli/options.h"
+#include "app/cli/picture.h"
+#include "app/cli/progress_bar.h"
+#include "app/cli/scene_options.h"
+#include "app/cli/stop.h"
+#include "app/cli/technique_options.h"
+#include "app/cli/terminal.h"
+#include "core/file.h"
+#include "nephroid/nephroid.h"
+#include "scene/edit.h"
+#include "scene/report.h"
+#include "techniques/layers.h"
+#include "techniques/technique.h"
+
+namespace nephroid::cli {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+constexpr const char* kExamples = R"(Examples:
+  nephroid render builtin:ring -o ring.png
+  nephroid render glass.glb -o glass.exr --aov beauty,direct,caustic --samples 256
+  nephroid render builtin:prism -o prism.png --material 'prism:abbe=20' --seconds 10
+  nephroid render builtin:pool -o pool.png --frames 1..48 --fps 24
+  nephroid render cup.glb -o cup.png --light sun:azimuth=30,elevation=40,irradiance=10)";
+
+struct RenderOptions {
+  SceneOptions scene;
+  TechniqueOptions technique;
+  PictureOptions picture;
+  std::string camera, output, frames, device = "auto";
+  std::string aov = "beauty";
+  float fps = 24;
+  bool stats = false, verbose = false, json = false;
+};
+
+/// What a run has to say on stdout with --json.
+struct Outcome {
+  std::vector<std::string> files;
+  RenderResult result;
+  std::vector<std::string> warnings, diagnosis;
+};
+
+/// First and last frame of "A..B".
+struct FrameRange {
+  int first = 0, last = 0;
+};
+
+std::optional<FrameRange> parseFrames(const std::string& text) {
+  if (text.empty()) return std::nullopt;
+  constexpr std::uint64_t kMaxFrame = 9999;  // what %04d keeps in order
+  const std::size_t dots = text.find("..");
+  if (dots == std::string::npos)
+    throw UsageError(fmt::format("--frames: '{}' is no range; write A..B, such as 1..48", text));
+  const std::uint64_t first = parseCount("--frames", text.substr(0, dots));
+  const std::uint64_t last = parseCount("--frames", text.substr(dots + 2));
+  if (first > last || last > kMaxFrame)
+    throw UsageError(fmt::format("--frames: '{}' is no range; 0 <= A <= B <= {} is expected", text, kMaxFrame));
+  return FrameRange{static_cast<int>(first), static_cast<int>(last)};
+}
+
+void checkDevice(const std::string& device) {
+  if (device == "auto" || device == "cpu") return;
+  throw DeviceError(fmt::format("--device {}: no Vulkan device support in this build; use --device cpu", device));
+}
+
+std::string frameName(const std::string& output, int frame) {
+  const std::filesystem::path path(output);
+  return (path.parent_path() / fmt::format("{}_{:04}{}", path.stem().string(), frame, path.extension().string()))
+      .string();
+}
+
+std::map<std::string, std::string> describeRun(const RenderOptions& options, float time_s) {
+  std::map<std::string, std::string> facts = describeSceneOptions(options.scene);
+  facts["time"] = fmt::format("{}", time_s);
+  facts["version"] = std::string(version());
+  facts["camera"] = options.camera.empty() ? "0" : options.camera;
+  facts["device"] = "cpu";
+  return facts;
+}
+
+/// What varies between equal runs; only with --stats, so that equal runs write equal files.
+void addStats(std::map<std::string, std::string>& facts, const RenderStats& stats, int threads) {
+  for (const StageTime& stage : stats.stages)
+    facts["stats." + stage.name + "_s"] = fmt::format("{:.6f}", stage.seconds);
+  facts["stats.rays"] = fmt::format("{}", stats.rays);
+  facts["stats.photons"] = fmt::format("{}", stats.photons);
+  facts["stats.samples"] = fmt::format("{}", stats.samples);
+  facts["stats.not_finite"] = fmt::format("{}", stats.not_finite);
+  facts["stats.threads"] = fmt::format("{}", threads);
+}
+
+void printVerbose(const Outcome& outcome) {
+  const RenderStats& stats = outcome.result.stats;
+  for (const StageTime& stage : stats.stages) writeStderr(fmt::format("{:<24} {:10.3f} s", stage.name, stage.seconds));
+  writeStderr(fmt::format("{:<24} {:>10}\n{:<24} {:>10}\n{:<24} {:>10}", "rays", stats.rays, "photons", stats.photons,
+                          "samples per pixel", stats.samples));
+  if (stats.not_finite > 0) writeStderr(fmt::format("{:<24} {:>10}", "dropped, not finite", stats.not_finite));
+  if (!outcome.result.ledgers.empty()) writeStderr(formatLedgers(outcome.result.ledgers));
+  for (const std::string& note : outcome.result.notes) writeStderr("note: " + note);
+  for (const std::string& line : outcome.diagnosis) writeStderr("diagnosis: " + line);
+}
+
+Json toJson(const Outcome& outcome) {
+  const RenderStats& stats = outcome.result.stats;
+  Json stages = Json::object();
+  for (const StageTime& stage : stats.stages) stages[stage.name] = stage.seconds;
+  return {{"files", outcome.files},
+          {"width", outcome.result.image.width},
+          {"height", outcome.result.image.height},
+          {"metadata", outcome.result.image.metadata},
+          {"interrupted", outcome.result.interrupted},
+          {"stages_s", stages},
+          {"rays", stats.rays},
+          {"photons", stats.photons},
+          {"samples", stats.samples},
+          {"not_finite", stats.not_finite},
+          {"ledgers", Json::parse(formatLedgersJson(outcome.result.ledgers))},
+          {"warnings", outcome.warnings},
+          {"notes", outcome.result.notes},
+          {"diagnosis", outcome.diagnosis}};
+}
+
+/// Renders and writes one picture.
+/// @throws Error
+Outcome renderPicture(const RenderOptions& options, RenderSettings settings, const std::string& output, float time_s,
+                      const std::string& title) {
+  const auto start = std::chrono::steady_clock::now();
+  const SceneData scene = loadEditedScene(options.scene, time_s);
+  const Camera camera = selectCamera(scene, options.camera.empty() ? "0" : options.camera);
+  const double load_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  if (stopToken().requested()) throw InterruptedError("interrupted while loading; nothing was drawn");
+
+  Outcome outcome;
+  {
+    ProgressBar bar(title);
+    outcome.result = findTechnique(options.technique.name).render(scene, camera, settings, &bar, &stopToken());
+  }
+  outcome.result.stats.stages.insert(outcome.result.stats.stages.begin(), {"load", load_s});
+  outcome.result.image.metadata.merge(describeRun(options, time_s));
+  if (options.stats) addStats(outcome.result.image.metadata, outcome.result.stats, settings.threads);
+  outcome.warnings = scene.warnings;
+  outcome.diagnosis = diagnoseLedgers(outcome.result.ledgers);
+  if (outcome.result.ledgers.empty()) outcome.diagnosis = inspectScene(scene).diagnosis;
+  outcome.files = writePicture(output, outcome.result.image, options.picture);
+  return outcome;
+}
+
+ExitCode runRender(const RenderOptions& options) {
+  if (options.output.empty()) throw UsageError("render: no output given; add -o picture.png or -o picture.exr");
+  checkDevice(options.device);
+  RenderSettings settings = makeSettings(options.technique);
+  settings.layers = parseLayerList(options.aov);
+  const std::optional<FrameRange> frames = parseFrames(options.frames);
+  checkPicture(frames ? frameName(options.output, frames->first) : options.output, settings.layers, options.picture);
+
+  bool interrupted = false;
+  Json report = Json::array();
+  const FrameRange range = frames.value_or(FrameRange{0, 0});
+  for (int frame = range.first; frame <= range.last && !interrupted; ++frame) {
+    const std::string output = frames ? frameName(options.output, frame) : options.output;
+    const float time_s = options.scene.time + (frames ? static_cast<float>(frame) / options.fps : 0.0F);
+    const std::string title = frames ? fmt::format("frame {}/{}", frame, range.last) : "";
+    const Outcome outcome = renderPicture(options, settings, output, time_s, title);
+    interrupted = outcome.result.interrupted || stopToken().requested();
+    if (options.verbose) printVerbose(outcome);
+    for (const std::string& file : outcome.files) writeStderr("wrote " + file);
+    if (options.json) report.push_back(toJson(outcome));
+  }
+  if (options.json) writeStdout((frames ? report : report.front()).dump(2) + "\n");
+  if (interrupted) writeStderr("interrupted: the last picture holds what was reached");
+  return interrupted ? ExitCode::kInterrupted : ExitCode::kDone;
+}
+
+void addOutputOptions(CLI::App& app, RenderOptions& options) {
+  app.option_defaults()->group("Output");
+  addValue(app, "-o,--output", options.output, "FILE",
+           {"Where the picture goes. .exr: every layer, linear; .png: sRGB, beauty or the only layer asked for; each "
+            "further layer goes to FILE.LAYER.png.",
+            "", "*.exr|*.png", ""});
+  std::vector<std::string> names;
+  for (const LayerInfo& layer : layerInfos()) names.emplace_back(layer.name);
+  addValue(app, "--aov", options.aov, "LAYERS",
+           {"Layers, separated by commas. beauty is the sum of emission, direct, caustic, specular and indirect; "
+            "docs/cli.md explains each.",
+            "beauty", fmt::format("{}", fmt::join(names, "|")), ""});
+  addPictureOptions(app, options.picture);
+  addSwitch(app, "--stats", options.stats,
+            "Also store times, rays and photons in the file; without it, equal runs write equal files.");
+  addSwitch(app, "--verbose", options.verbose,
+            "Print times, the photon ledger, notes and, where no caustic is seen, why, to stderr.");
+  addSwitch(app, "--json", options.json, "Print the same as JSON to stdout.");
+  app.option_defaults()->group("Options");
+}
+
+void addAnimationOptions(CLI::App& app, RenderOptions& options) {
+  app.option_defaults()->group("Animation");
+  addValue(app, "--frames", options.frames, "A..B",
+           {"Draws frames A to B at time T + frame/F into FILE_0001 and so on.", "one picture", "0 to 9999", ""});
+  addValue(app, "--fps", options.fps, "F", {"Frames per second of --frames.", "24", "0.001 to 100000", "1/s"})
+      ->check(checkNumber(1e-3, 1e5));
+  app.option_defaults()->group("Options");
+}
+
+}  // namespace
+
+Command addRenderCommand(CLI::App& root) {
+  const auto options = std::make_shared<RenderOptions>();
+  CLI::App* app = root.add_subcommand("render", "Draw a picture of a scene, with its caustics.");
+  app->footer(kExamples);
+  addSceneOptions(*app, options->scene);
+  addCameraOption(*app, options->camera);
+  addOutputOptions(*app, *options);
+  addTechniqueOptions(*app, options->technique, options->technique.name, options->technique.name);
+  addAnimationOptions(*app, *options);
+  addValue(*app, "--device", options->device, "DEVICE",
+           {"What computes; this build has no Vulkan support, so auto is cpu.", "auto", "auto|cpu|N", ""})
+      ->group("Technique");
+  return {app, [app, options] {
+            if (!options->scene.state.empty()) applyStateFile(*app, options->scene.state);
+            return runRender(*options);
+          }};
+}
+
+}  // namespace nephroid::cli

@@ -1,0 +1,35 @@
+#include "app/cli/stop.h"
+
+#include <unistd.h>
+
+#include <csignal>
+#include <string_view>
+
+namespace nephroid::cli {
+namespace {
+
+StopToken g_stop;
+
+// Only what POSIX allows in a handler: a lock-free store and write(2).
+extern "C" void onStopSignal(int) {
+  g_stop.request();
+  constexpr std::string_view kHint = "\nstopping; once more to kill\n";
+  if (isatty(STDERR_FILENO) == 1 && write(STDERR_FILENO, kHint.data(), kHint.size()) < 0) return;
+}
+
+}  // namespace
+
+void installSignalHandlers() {
+  struct sigaction action {};
+  action.sa_handler = onStopSignal;
+  // One shot: the second signal finds the default action and ends the program, whatever it hangs in.
+  action.sa_flags = static_cast<int>(SA_RESETHAND) | SA_RESTART;
+  sigemptyset(&action.sa_mask);
+  sigaction(SIGINT, &action, nullptr);
+  sigaction(SIGTERM, &action, nullptr);
+  std::signal(SIGPIPE, SIG_IGN);
+}
+
+const StopToken& stopToken() { return g_stop; }
+
+}  // namespace nephroid::cli

@@ -1,0 +1,54 @@
+// Where estimates are summed: one plane of doubles per layer, in an order that does not depend on threads.
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "core/math.h"
+#include "techniques/technique.h"
+
+namespace nephroid {
+
+/// The radiance sums of one estimator; absent layers cost nothing.
+class FilmPlane {
+ public:
+  FilmPlane() = default;
+  FilmPlane(int width, int height) : values_(static_cast<std::size_t>(width) * height * 3, 0.0) {}
+  bool active() const { return !values_.empty(); }
+  void add(std::size_t pixel, vec3 value) {
+    double* p = values_.data() + 3 * pixel;
+    p[0] += value.x, p[1] += value.y, p[2] += value.z;
+  }
+  dvec3 at(std::size_t pixel) const { return {values_[3 * pixel], values_[3 * pixel + 1], values_[3 * pixel + 2]}; }
+
+ private:
+  std::vector<double> values_;
+};
+
+/// Which layers were asked for, as flags, and what follows for the estimators.
+struct LayerNeeds {
+  explicit LayerNeeds(const std::vector<std::string>& layers);
+  bool emission, direct, caustic, specular, indirect, specular_caustic, irradiance, irradiance_caustic, beauty;
+  bool geometry;  ///< any of albedo, normal, position, depth, id
+  /// Must paths from the eye go on after a first diffuse event?
+  bool beyondDiffuse() const { return indirect || irradiance; }
+  /// Must paths from the eye follow a first specular event?
+  bool throughSpecular() const { return specular || specular_caustic; }
+  bool radiance() const { return emission || direct || caustic || specular || indirect || irradiance || specular_caustic; }
+  /// What photons must be traced for.
+  bool lightTraced() const { return caustic || indirect || irradiance || irradiance_caustic; }
+};
+
+/// Sums of the estimators, and the pictures they make.
+struct Film {
+  Film(int width, int height, const LayerNeeds& needs);
+  int width, height;
+  // From the eye, to be divided by the samples per pixel.
+  FilmPlane emission, direct, caustic_from_eye, specular, indirect_from_eye, specular_caustic, irradiance_from_eye,
+      irradiance_caustic_from_eye;
+  // From the lights, to be divided by the number of batches.
+  FilmPlane caustic, indirect, irradiance, irradiance_caustic;
+};
+
+}  // namespace nephroid

@@ -1,0 +1,55 @@
+// Light tracing: photons from the lights, aimed at what bends them, connected to the camera where they end (after
+// Arvo 1986, "Backward ray tracing"; camera connection after Dutré, Lafortune, Willems 1993).
+//
+// Makes the paths L S … D E: the caustic (L S⁺ D E) and what a caustic lights in turn (L S … D E with further D).
+// Unbiased, no kernel: a photon counts for the one pixel that sees it.
+// Limits: only what the camera sees directly or through panes; a caustic in a mirror is the path tracer's.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <span>
+#include <vector>
+
+#include "techniques/reference/film.h"
+#include "techniques/reference/world.h"
+
+namespace nephroid {
+
+/// What one photon adds to one pixel.
+struct Splat {
+  std::uint32_t pixel;
+  bool is_caustic;   ///< else indirect
+  vec3 radiance;     ///< W/m²/sr × emitted count
+  vec3 irradiance;   ///< W/m² × emitted count
+};
+
+/// What a run of photons left behind.
+struct PhotonTally {
+  Ledger ledger;  ///< sums of flux × emitted count
+  std::uint64_t rays = 0;
+  std::uint64_t not_finite = 0;
+  std::vector<Splat> splats;
+};
+
+class LightTracer {
+ public:
+  /// @param continue_after_diffuse  also trace what a caustic lights in turn
+  LightTracer(const ReferenceWorld& world, bool continue_after_diffuse);
+
+  std::span<const std::unique_ptr<Emitter>> emitters() const { return emitters_; }
+  /// Photons of a batch for each emitter, by flux, at least one each; sums to `total` or a little more.
+  std::vector<std::uint32_t> sharePhotons(std::uint32_t total) const;
+  /// Traces photons [begin, end) of an emitter; deterministic, safe from any thread.
+  void trace(std::size_t emitter, std::uint32_t begin, std::uint32_t end, PhotonTally& tally) const;
+  bool anyTarget() const { return !targets_->empty(); }
+
+ private:
+  const ReferenceWorld& world_;
+  bool continue_after_diffuse_;
+  std::vector<bool> is_target_;
+  std::unique_ptr<EmissionTargets> targets_;
+  std::vector<std::unique_ptr<Emitter>> emitters_;
+};
+
+}  // namespace nephroid

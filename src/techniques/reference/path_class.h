@@ -1,0 +1,64 @@
+// Which layer a path belongs to, decided from its events as it grows from the eye (DESIGN §2, "Layers").
+#pragma once
+
+#include <cstdint>
+
+#include "trace/bsdf.h"
+
+namespace nephroid {
+
+/// The layers that partition all paths; kSpecularCaustic is a part of kSpecular that is also shown on its own.
+enum class PathLayer : std::uint8_t { kEmission, kDirect, kCaustic, kSpecular, kIndirect };
+
+/// The events of a path so far, x_n (next to the eye) first.
+class PathClass {
+ public:
+  void add(EventClass event) {
+    const bool specular = event == EventClass::kSpecular;
+    if (count_ == 0) {
+      first_specular_ = specular;
+      stage_ = specular ? Stage::kEyeSide : Stage::kOther;
+    } else {
+      later_all_specular_ = later_all_specular_ && specular;
+      switch (stage_) {
+        case Stage::kEyeSide:
+          if (!specular) stage_ = Stage::kReceiver;
+          break;
+        case Stage::kReceiver:
+        case Stage::kLightSide:
+          stage_ = specular ? Stage::kLightSide : Stage::kOther;
+          break;
+        case Stage::kOther:
+          break;
+      }
+    }
+    last_specular_ = specular;
+    ++count_;
+  }
+  PathClass with(EventClass event) const {
+    PathClass copy = *this;
+    copy.add(event);
+    return copy;
+  }
+
+  int count() const { return count_; }
+  bool firstIsDiffuse() const { return count_ > 0 && !first_specular_; }
+  PathLayer layer() const {
+    if (count_ == 0) return PathLayer::kEmission;
+    if (first_specular_) return PathLayer::kSpecular;
+    if (count_ == 1) return PathLayer::kDirect;
+    return later_all_specular_ ? PathLayer::kCaustic : PathLayer::kIndirect;
+  }
+  /// L S⁺ D S⁺ E: a caustic seen in a mirror or through glass.
+  bool isSpecularCaustic() const { return stage_ == Stage::kLightSide; }
+  /// L S … D E: found by light tracing, whose photons first meet something specular and end on what the eye sees.
+  bool isLightTraced() const { return firstIsDiffuse() && last_specular_; }
+
+ private:
+  enum class Stage : std::uint8_t { kEyeSide, kReceiver, kLightSide, kOther };
+  int count_ = 0;
+  bool first_specular_ = false, last_specular_ = false, later_all_specular_ = true;
+  Stage stage_ = Stage::kOther;
+};
+
+}  // namespace nephroid

@@ -1,0 +1,374 @@
+#include "techniques/reference/reference.h"
+
+#include <fmt/format.h>
+#include <tbb/blocked_range2d.h>
+#include <tbb/global_control.h>
+#include <tbb/parallel_for.h>
+#include <tbb/task_arena.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <memory>
+
+#include "nephroid/error.h"
+#include "techniques/layers.h"
+#include "techniques/reference/geometry_layers.h"
+#include "techniques/reference/light_tracer.h"
+#include "techniques/reference/path_tracer.h"
+
+namespace nephroid {
+namespace {
+
+/// Photons of one task: long enough to make scheduling cheap, short enough to stop promptly.
+constexpr std::uint32_t kChunkPhotons = 4096;
+/// Photons between two looks at the clock. Its splats are held in memory: 32 bytes each, a few a photon at most.
+constexpr std::uint32_t kBatchPhotons = 1U << 18;
+/// Bands of the picture into which the splats of a batch are summed in parallel.
+constexpr std::size_t kSplatBands = 16;
+/// Budgets when none is given: a few seconds for a picture of half a megapixel.
+constexpr std::uint64_t kDefaultSamples = 32;
+constexpr std::uint64_t kDefaultPhotons = 2'000'000;
+
+using Clock = std::chrono::steady_clock;
+double secondsSince(Clock::time_point start) { return std::chrono::duration<double>(Clock::now() - start).count(); }
+
+/// One progressive render.
+class ReferenceRender {
+ public:
+  ReferenceRender(const SceneData& scene, const Camera& camera, const RenderSettings& settings, ProgressSink* progress,
+                  const StopToken* stop)
+      : start_(Clock::now()), settings_(settings), progress_(progress), stop_(stop), needs_(settings.layers),
+        world_(scene, camera, settings.width, settings.height, makeOptions(settings)),
+        film_(settings.width, settings.height, needs_), path_tracer_(world_, needs_) {
+    if (world_.options.light_tracing && needs_.lightTraced())
+      light_tracer_ = std::make_unique<LightTracer>(world_, needs_.indirect || needs_.irradiance);
+    if (light_tracer_ && light_tracer_->emitters().empty()) light_tracer_.reset();
+    if (light_tracer_) shareLedgers();
+    chooseBudgets();
+    addStage("build", secondsSince(start_));
+  }
+
+  RenderResult run() {
+    RenderResult result;
+    result.image.width = settings_.width, result.image.height = settings_.height;
+    timed("geometry", [&] { geometry_ = renderGeometryLayers(world_, settings_.layers); });
+    while (!finished()) {
+      if (stopped()) break;
+      step();
+      report();
+    }
+    result.interrupted = stopped();
+    const bool nothing = (samples_budget_ > 0 && samples_done_ == 0) && (photons_budget_ == 0 || photons_done_ == 0);
+    if (result.interrupted && nothing) throw InterruptedError("interrupted before there was anything to keep");
+    develop(result);
+    describe(result);
+    return result;
+  }
+
+ private:
+  static ReferenceOptions makeOptions(const RenderSettings& settings) {
+    ReferenceOptions options;
+    options.specular_alpha = settings.params.getFloat("specular-alpha");
+    options.max_bounces = settings.params.getInt("max-bounces");
+    options.light_tracing = settings.params.getString("caustic-estimator") == "light";
+    if (const int bands = settings.params.getInt("bands"); bands > 0) options.spectral.bands = makeBands(bands);
+    // A 64-bit seed is folded; equal seeds give equal pictures, which is all that is promised.
+    options.seed = static_cast<std::uint32_t>(settings.seed ^ (settings.seed >> 32));
+    return options;
+  }
+
+  void chooseBudgets() {
+    const bool timed_only = settings_.seconds > 0 && settings_.samples == 0 && settings_.photons == 0;
+    constexpr std::uint64_t kUnlimited = std::uint64_t{1} << 62;
+    samples_budget_ = settings_.samples ? settings_.samples : timed_only ? kUnlimited : kDefaultSamples;
+    photons_budget_ = settings_.photons ? settings_.photons : timed_only ? kUnlimited : kDefaultPhotons;
+    if (!needs_.radiance()) samples_budget_ = 0;
+    if (!light_tracer_) photons_budget_ = 0;
+    if (photons_budget_ > 0 && photons_budget_ < kUnlimited) {
+      const std::uint64_t batches = (photons_budget_ + kBatchPhotons - 1) / kBatchPhotons;
+      batch_photons_ = static_cast<std::uint32_t>((photons_budget_ + batches - 1) / batches);
+    }
+    if (light_tracer_) batch_shares_ = light_tracer_->sharePhotons(batch_photons_);
+  }
+
+  bool stopped() const { return stop_ && stop_->requested(); }
+  bool timeIsUp() const { return settings_.seconds > 0 && secondsSince(start_) >= settings_.seconds; }
+  bool samplesLeft() const { return samples_done_ < samples_budget_; }
+  bool photonsLeft() const { return photons_done_ < photons_budget_; }
+  bool finished() const {
+    if (!samplesLeft() && !photonsLeft()) return true;
+    // Time may end a render only when every layer has something in it.
+    const bool something = (samples_budget_ == 0 || samples_done_ > 0) && (photons_budget_ == 0 || photons_done_ > 0);
+    return something && timeIsUp();
+  }
+
+  /// One pass of whichever direction is behind: by time if time is the budget, else by share of its budget.
+  void step() {
+    bool photons = photonsLeft();
+    if (photons && samplesLeft()) {
+      if (samples_done_ == 0)
+        photons = false;
+      else if (photons_done_ > 0)
+        photons = settings_.seconds > 0 ? light_seconds_ <= path_seconds_
+                                        : share(photons_done_, photons_budget_) <= share(samples_done_, samples_budget_);
+    }
+    const Clock::time_point begin = Clock::now();
+    if (photons) {
+      tracePhotons();
+      light_seconds_ += secondsSince(begin);
+    } else {
+      tracePaths();
+      path_seconds_ += secondsSince(begin);
+    }
+  }
+  static double share(std::uint64_t done, std::uint64_t budget) {
+    return static_cast<double>(done) / static_cast<double>(budget);
+  }
+
+  /// One sample per pixel. Pixels are independent, so the order of tiles does not matter.
+  void tracePaths() {
+    const auto sample = static_cast<std::uint32_t>(samples_done_);
+    std::vector<PathCounters> rows(static_cast<std::size_t>(settings_.height));
+    std::atomic<bool> complete{true};
+    tbb::parallel_for(0, settings_.height, [&](int y) {
+      if (stopped() && samples_done_ > 0) {
+        complete = false;
+        return;
+      }
+      for (int x = 0; x < settings_.width; ++x) path_tracer_.tracePath(x, y, sample, film_, rows[y]);
+    });
+    // A pass that was cut short has some rows more than others: those rows know it by the pass count they are divided by.
+    if (!complete) {
+      partial_rows_.assign(static_cast<std::size_t>(settings_.height), false);
+      for (int y = 0; y < settings_.height; ++y) partial_rows_[y] = rows[y].rays > 0;
+      return;
+    }
+    for (const PathCounters& row : rows) rays_ += row.rays, not_finite_ += row.not_finite;
+    ++samples_done_;
+  }
+
+  /// One batch, in chunks whose splats are summed in their order.
+  void tracePhotons() {
+    struct Chunk {
+      std::size_t emitter;
+      std::uint32_t begin, end;
+      PhotonTally tally;
+      std::vector<std::uint32_t> band_begin;
+    };
+    std::vector<Chunk> chunks;
+    const auto batch = static_cast<std::uint32_t>(batches_done_);
+    for (std::size_t e = 0; e < batch_shares_.size(); ++e) {
+      const std::uint32_t first = batch * batch_shares_[e];
+      for (std::uint32_t i = 0; i < batch_shares_[e]; i += kChunkPhotons)
+        chunks.push_back({e, first + i, first + std::min(i + kChunkPhotons, batch_shares_[e]), {}, {}});
+    }
+    const std::size_t pixels = static_cast<std::size_t>(settings_.width) * settings_.height;
+    const std::size_t band_pixels = (pixels + kSplatBands - 1) / kSplatBands;
+    std::atomic<bool> complete{true};
+    tbb::parallel_for(std::size_t{0}, chunks.size(), [&](std::size_t i) {
+      Chunk& chunk = chunks[i];
+      if (stopped()) {
+        complete = false;
+        return;
+      }
+      light_tracer_->trace(chunk.emitter, chunk.begin, chunk.end, chunk.tally);
+      sortByBand(chunk.tally.splats, band_pixels, chunk.band_begin);
+    });
+    // Half a batch would favour some lights over others: it is dropped.
+    if (!complete) return;
+    tbb::parallel_for(std::size_t{0}, kSplatBands, [&](std::size_t band) {
+      for (const Chunk& chunk : chunks) {
+        const float scale = 1.0F / static_cast<float>(batch_shares_[chunk.emitter]);
+        for (std::uint32_t s = chunk.band_begin[band]; s < chunk.band_begin[band + 1]; ++s)
+          addSplat(chunk.tally.splats[s], scale);
+      }
+    });
+    for (const Chunk& chunk : chunks) {
+      ledgers_[chunk.emitter].add(chunk.tally.ledger);
+      rays_ += chunk.tally.rays;
+      not_finite_ += chunk.tally.not_finite;
+      photons_done_ += chunk.end - chunk.begin;
+    }
+    ++batches_done_;
+  }
+
+  static void sortByBand(std::vector<Splat>& splats, std::size_t band_pixels, std::vector<std::uint32_t>& band_begin) {
+    std::stable_sort(splats.begin(), splats.end(), [band_pixels](const Splat& a, const Splat& b) {
+      return a.pixel / band_pixels < b.pixel / band_pixels;
+    });
+    band_begin.assign(kSplatBands + 1, static_cast<std::uint32_t>(splats.size()));
+    for (std::size_t i = splats.size(); i-- > 0;)
+      for (std::size_t band = 0; band <= splats[i].pixel / band_pixels; ++band) 
+        band_begin[band] = std::min(band_begin[band], static_cast<std::uint32_t>(i));
+    for (std::size_t band = kSplatBands; band-- > 0;) band_begin[band] = std::min(band_begin[band], band_begin[band + 1]);
+  }
+
+  void addSplat(const Splat& splat, float scale) {
+    const auto addTo = [&](FilmPlane& plane, vec3 value) {
+      if (plane.active()) plane.add(splat.pixel, value * scale);
+    };
+    addTo(splat.is_caustic ? film_.caustic : film_.indirect, splat.radiance);
+    addTo(film_.irradiance, splat.irradiance);
+    if (splat.is_caustic) addTo(film_.irradiance_caustic, splat.irradiance);
+  }
+
+  void shareLedgers() {
+    for (const auto& emitter : light_tracer_->emitters()) {
+      ledgers_.emplace_back();
+      ledgers_.back().light = emitter->name();
+    }
+  }
+
+  void report() {
+    if (!progress_) return;
+    double fraction = 0.0;
+    if (settings_.seconds > 0) fraction = secondsSince(start_) / settings_.seconds;
+    double by_budget = 0.0;
+    int budgets = 0;
+    if (samples_budget_ > 0) by_budget += share(samples_done_, samples_budget_), ++budgets;
+    if (photons_budget_ > 0) by_budget += share(photons_done_, photons_budget_), ++budgets;
+    if (budgets > 0) fraction = std::max(fraction, by_budget / budgets);
+    progress_->update(std::min(fraction, 1.0), fmt::format("{} samples, {:.1f} M photons", samples_done_,
+                                                           static_cast<double>(photons_done_) * 1e-6));
+  }
+
+  /// From sums to pictures.
+  void develop(RenderResult& result) {
+    for (const std::string& name : settings_.layers) {
+      const auto geometry = std::find_if(geometry_.begin(), geometry_.end(), [&](const Layer& l) { return l.name == name; });
+      if (geometry != geometry_.end())
+        result.image.layers.push_back(std::move(*geometry));
+      else
+        result.image.layers.push_back({name, developLayer(name)});
+    }
+  }
+
+  Image developLayer(std::string_view name) const {
+    struct Part {
+      std::string_view layer;
+      const FilmPlane* from_eye;
+      const FilmPlane* from_lights;
+    };
+    const Part parts[] = {{"emission", &film_.emission, nullptr},
+                          {"direct", &film_.direct, nullptr},
+                          {"caustic", &film_.caustic_from_eye, &film_.caustic},
+                          {"specular", &film_.specular, nullptr},
+                          {"indirect", &film_.indirect_from_eye, &film_.indirect},
+                          {"specular_caustic", &film_.specular_caustic, nullptr},
+                          {"irradiance", &film_.irradiance_from_eye, &film_.irradiance},
+                          {"irradiance_caustic", &film_.irradiance_caustic_from_eye, &film_.irradiance_caustic}};
+    Image image(settings_.width, settings_.height, 3);
+    const double by_batches = batches_done_ > 0 ? 1.0 / static_cast<double>(batches_done_) : 0.0;
+    for (std::size_t pixel = 0; pixel < image.pixels.size() / 3; ++pixel) {
+      const std::size_t row = pixel / static_cast<std::size_t>(settings_.width);
+      const std::uint64_t samples = samples_done_ + (!partial_rows_.empty() && partial_rows_[row] ? 1 : 0);
+      const double by_samples = samples > 0 ? 1.0 / static_cast<double>(samples) : 0.0;
+      vec3 sum(0.0F);
+      for (const Part& part : parts) {
+        const bool summed = name == "beauty" && findLayerInfo(part.layer).summed;
+        if (part.layer != name && !summed) continue;
+        // Each layer is rounded to float before the sum, so that the files' layers add up to the files' beauty.
+        dvec3 value(0.0);
+        if (part.from_eye->active()) value += part.from_eye->at(pixel) * by_samples;
+        if (part.from_lights && part.from_lights->active()) value += part.from_lights->at(pixel) * by_batches;
+        sum += vec3(value);
+      }
+      image.setRgb(static_cast<int>(pixel % settings_.width), static_cast<int>(row), sum);
+    }
+    return image;
+  }
+
+  void describe(RenderResult& result) {
+    for (std::size_t e = 0; e < ledgers_.size(); ++e) {
+      if (ledgers_[e].emitted_count > 0) ledgers_[e].scale(1.0 / static_cast<double>(ledgers_[e].emitted_count));
+      result.ledgers.push_back(ledgers_[e]);
+    }
+    addStage("path tracing", path_seconds_);
+    addStage("light tracing", light_seconds_);
+    result.stats.stages = stages_;
+    result.stats.rays = rays_;
+    result.stats.photons = photons_done_;
+    result.stats.samples = samples_done_;
+    result.stats.not_finite = not_finite_;
+    auto& metadata = result.image.metadata;
+    metadata["technique"] = "reference";
+    metadata["seed"] = std::to_string(settings_.seed);
+    metadata["samples"] = std::to_string(samples_done_);
+    metadata["photons"] = std::to_string(photons_done_);
+    for (const ParamSpec& spec : settings_.params.specs()) metadata["set." + spec.name] = settings_.params.toText(spec.name);
+    addNotes(result);
+  }
+
+  void addNotes(RenderResult& result) const {
+    bool any_delta = false;
+    for (const Light& light : world_.scene.scene().lights)
+      any_delta = any_delta || (light.kind == LightKind::kSun ? light.angle_deg == 0.0F : light.radius == 0.0F);
+    if (any_delta && (needs_.specular || needs_.specular_caustic))
+      result.notes.emplace_back(
+          "caustics in mirrors and through glass are missing under lights without a size: give them extras.radius or extras.angle");
+    if (any_delta && !world_.options.light_tracing && needs_.caustic)
+      result.notes.emplace_back("caustic-estimator=path finds no caustic of lights without a size");
+    if (not_finite_ > 0)
+      result.notes.push_back(fmt::format("{} path contributions were not finite and were dropped", not_finite_));
+  }
+
+  void addStage(std::string name, double seconds) { stages_.push_back({std::move(name), seconds}); }
+  template <class Work>
+  void timed(std::string name, Work&& work) {
+    const Clock::time_point begin = Clock::now();
+    work();
+    addStage(std::move(name), secondsSince(begin));
+  }
+
+  Clock::time_point start_;
+  const RenderSettings& settings_;
+  ProgressSink* progress_;
+  const StopToken* stop_;
+  LayerNeeds needs_;
+  ReferenceWorld world_;
+  Film film_;
+  PathTracer path_tracer_;
+  std::unique_ptr<LightTracer> light_tracer_;
+  std::vector<Ledger> ledgers_;
+  std::vector<Layer> geometry_;
+  std::vector<StageTime> stages_;
+  std::vector<bool> partial_rows_;
+  std::vector<std::uint32_t> batch_shares_;
+  std::uint32_t batch_photons_ = kBatchPhotons;
+  std::uint64_t samples_budget_ = 0, photons_budget_ = 0, samples_done_ = 0, photons_done_ = 0, batches_done_ = 0;
+  std::uint64_t rays_ = 0, not_finite_ = 0;
+  double path_seconds_ = 0, light_seconds_ = 0;
+};
+
+RenderResult renderReference(const SceneData& scene, const Camera& camera, const RenderSettings& settings,
+                             ProgressSink* progress, const StopToken* stop) {
+  if (settings.width < 1 || settings.height < 1) throw UsageError("a picture has at least 1 × 1 pixels");
+  const int threads = settings.threads > 0 ? settings.threads : tbb::this_task_arena::max_concurrency();
+  const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, static_cast<std::size_t>(std::max(threads, 1)));
+  tbb::task_arena arena(threads);
+  RenderResult result;
+  arena.execute([&] { result = ReferenceRender(scene, camera, settings, progress, stop).run(); });
+  return result;
+}
+
+}  // namespace
+
+Technique makeReferenceTechnique() {
+  Technique technique;
+  technique.name = "reference";
+  technique.text = "path tracing and light tracing on the CPU, progressive and unbiased: the truth for all others";
+  technique.source = "Kajiya 1986; Arvo 1986; Veach 1997";
+  technique.params = {
+      {"specular-alpha", kDefaultSpecularAlpha, 0.0, 1.0, "", "microfacet width below which a lobe counts as specular (an S event)", {}},
+      {"max-bounces", 64, 1, 1024, "", "scattering events on a path before it is given up", {}},
+      {"caustic-estimator", std::string("light"), 0, 0, "",
+       "light: photons connected to the camera; path: paths from the eye alone, for checking (needs lights with a size)",
+       {"light", "path"}},
+      {"bands", 0, 0, 64, "", "wavelength bands of dispersive light; 0: continuous", {}},
+  };
+  technique.render = renderReference;
+  return technique;
+}
+
+}  // namespace nephroid

@@ -1,0 +1,68 @@
+// What a technique is to the rest of the program, and the list of those that exist.
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "core/image/image.h"
+#include "core/params.h"
+#include "core/progress.h"
+#include "scene/scene_data.h"
+#include "techniques/ledger.h"
+
+namespace nephroid {
+
+/// What to render. A budget of 0 means "not given"; the first budget to be spent ends a progressive render.
+struct RenderSettings {
+  int width = 1024, height = 768;
+  std::vector<std::string> layers{"beauty"};  ///< names of layerInfos()
+  std::uint64_t photons = 0;  ///< emitted, all lights and bands
+  std::uint64_t samples = 0;  ///< per pixel
+  double seconds = 0;
+  std::uint64_t seed = 0;
+  int threads = 0;            ///< 0: all cores
+  ParamSet params;            ///< of the technique, from --set
+};
+
+struct StageTime {
+  std::string name;
+  double seconds = 0;
+};
+
+/// What was done; varies between equal runs, so it goes into files only with --stats.
+struct RenderStats {
+  std::vector<StageTime> stages;
+  std::uint64_t rays = 0;     ///< traced, shadow rays included
+  std::uint64_t photons = 0;  ///< emitted
+  std::uint64_t samples = 0;  ///< per pixel
+  std::uint64_t not_finite = 0;  ///< path contributions dropped because they were not finite
+};
+
+struct RenderResult {
+  LayeredImage image;  ///< the layers asked for; metadata: technique, parameters, seed, budgets spent
+  RenderStats stats;
+  std::vector<Ledger> ledgers;     ///< one per light that photons were emitted from
+  std::vector<std::string> notes;  ///< what a layer does not contain and why
+  bool interrupted = false;        ///< stopped early; the picture is what was reached
+};
+
+/// One technique: an entry of the explicit list in registry.cpp.
+struct Technique {
+  std::string name;
+  std::string text;
+  std::string source;
+  std::vector<ParamSpec> params;
+  /// Pictures of the same scene, settings and seed are identical for any thread count unless a time budget ends them.
+  /// @throws UsageError, ResourceError, InterruptedError (stopped before there was anything to keep)
+  RenderResult (*render)(const SceneData& scene, const Camera& camera, const RenderSettings& settings,
+                         ProgressSink* progress, const StopToken* stop);
+};
+
+std::span<const Technique> techniques();
+/// @throws UsageError with the names there are
+const Technique& findTechnique(std::string_view name);
+
+}  // namespace nephroid

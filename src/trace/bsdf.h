@@ -1,0 +1,94 @@
+// How a surface scatters: one microfacet interface (mirror, metal, glass, varnish) over one diffuse base.
+//
+// Events follow DESIGN §2: the interface is S if it is smooth or alpha < specular_alpha, else D; the base is D; straight
+// transmission through a smooth pane is no event. The two classes are kept apart everywhere (sampled, evaluated and
+// weighted on their own), because a path's layer depends on the class.
+//
+//   interface, reflected     R(θ) = metallic·F_metal(θ) + (1 − metallic)·gloss·tint·F(θ)
+//   interface, transmitted   T(θ) = (1 − metallic)·transmission·baseColor·(1 − tint·F(θ))
+//   base                     f = (1 − metallic)(1 − transmission)·baseColor/π · (1 − gF(θi))(1 − gF(θo)) / (1 − g<F>)
+//
+// with F the exact dielectric Fresnel reflectance, F_metal Schlick's with F0 = baseColor (glTF) or the exact one of a
+// complex index, g = gloss·tint. The base's form is reciprocal and, for a white base under a smooth interface, loses and
+// gains nothing (after Kelemen & Szirmay-Kalos 2001); glTF's own (1 − F(v·h)) would return up to 1.9 times what arrives
+// at grazing angles. GGX with visible-normal sampling (Walter et al. 2007; Heitz 2018).
+#pragma once
+
+#include <cstdint>
+#include <optional>
+
+#include "core/math.h"
+#include "trace/surface_material.h"
+
+namespace nephroid {
+
+enum class EventClass : std::uint8_t { kSpecular, kDiffuse };
+
+/// What a path carries decides how refraction scales it: radiance changes by the squared ratio of indices, flux does not.
+enum class Transport : std::uint8_t { kRadiance, kFlux };
+
+struct BsdfValue {
+  vec3 f{0.0F};      ///< 1/sr, without the cosine
+  float pdf = 0.0F;  ///< of sampling this direction within the class, per solid angle
+};
+
+struct BsdfSample {
+  vec3 dir;               ///< unit, away from the surface
+  vec3 weight{0.0F};      ///< f·|cos| / pdf within the class
+  float pdf = 0.0F;       ///< per solid angle; 0 if delta
+  bool delta = false;
+  bool transmitted = false;  ///< through the surface
+  bool pass = false;         ///< straight through a pane: no event
+};
+
+class Bsdf {
+ public:
+  /// @param wo              unit, away from the surface, to where the path comes from
+  /// @param ior_from,ior_to indices on wo's side and behind, for a solid; for anything else ior_from is the medium's
+  Bsdf(const SurfaceMaterial& material, const SurfacePoint& point, vec3 wo, float ior_from, float ior_to,
+       float specular_alpha);
+
+  /// Probability with which a path picks the S class rather than the D class: by albedo at wo.
+  float specularProbability() const { return interface_is_specular_ ? interface_probability_ : 0.0F; }
+  /// Expected share of flux that any event keeps, by class, at wo: what is missing from 1 is absorbed.
+  vec3 interfaceAlbedo() const { return reflectance_ + transmittance_; }
+  vec3 baseAlbedo() const { return base_albedo_; }
+  bool hasSpecular() const { return interface_is_specular_ && interface_probability_ > 0.0F; }
+  bool hasDiffuse() const { return !interface_is_specular_ || interface_probability_ < 1.0F; }
+  bool interfaceIsSpecular() const { return interface_is_specular_; }
+  /// True if the class has something to evaluate for a given direction (not only deltas).
+  bool isEvaluable(EventClass c) const { return c == EventClass::kDiffuse ? hasDiffuse() : hasSpecular() && !smooth_; }
+
+  BsdfValue evaluate(EventClass c, vec3 wi, Transport transport) const;
+  /// @param u two numbers for the direction, @param u_lobe one for the choice of lobe, all in [0, 1)
+  /// @return nothing if the sample falls on the wrong side of the true surface or below the microfacets
+  std::optional<BsdfSample> sample(EventClass c, vec2 u, float u_lobe, Transport transport) const;
+
+  /// |cos| between a direction and the shading normal over the one with the geometric normal: what turns flux incident
+  /// on the true surface into flux incident on the shaded one (Veach 1997, §5.3.2).
+  float shadingCosineRatio(vec3 w) const;
+  vec3 normal() const { return frame_.z; }
+
+ private:
+  vec3 reflectanceAt(float cos_theta) const;
+  vec3 transmittanceAt(float cos_theta) const;
+  vec3 baseFactor(float cos_theta) const;
+  bool sameSide(vec3 w) const { return (dot(w, normal_geometric_) > 0.0F) == side_is_outward_; }
+  BsdfValue evaluateInterface(vec3 wi_local, bool reflected, Transport transport) const;
+  std::optional<BsdfSample> sampleInterface(vec2 u, float u_lobe, Transport transport) const;
+  std::optional<BsdfSample> sampleSmooth(float u_lobe, Transport transport) const;
+  std::optional<BsdfSample> sampleBase(vec2 u) const;
+  float radianceScale(Transport transport) const;
+
+  const SurfaceMaterial& material_;
+  Frame frame_;  ///< z = shading normal on wo's side
+  vec3 normal_geometric_;
+  bool side_is_outward_;
+  vec3 wo_local_;
+  float ior_from_, ior_to_;
+  bool smooth_, interface_is_specular_, index_matched_;
+  float interface_probability_;
+  vec3 reflectance_, transmittance_, base_albedo_, base_scale_;
+};
+
+}  // namespace nephroid

@@ -1,0 +1,70 @@
+// Embree 3 and 4 behind one thin header: owning handles, checked errors, two ways to trace a ray.
+//
+// The only place that knows which version it is. Embree 4 drops the intersect context in favour of arguments that
+// default to null, and renames the header folder; everything else that we use is the same.
+#pragma once
+
+#if NEPHROID_EMBREE_MAJOR >= 4
+#include <embree4/rtcore.h>
+#else
+#include <embree3/rtcore.h>
+#endif
+
+#include <utility>
+
+namespace nephroid {
+
+/// Owns a reference to one Embree object; move-only.
+template <class Handle, void (*kRelease)(Handle)>
+class EmbreeHandle {
+ public:
+  EmbreeHandle() = default;
+  explicit EmbreeHandle(Handle handle) : handle_(handle) {}
+  EmbreeHandle(EmbreeHandle&& other) noexcept : handle_(std::exchange(other.handle_, nullptr)) {}
+  EmbreeHandle& operator=(EmbreeHandle&& other) noexcept {
+    std::swap(handle_, other.handle_);
+    return *this;
+  }
+  EmbreeHandle(const EmbreeHandle&) = delete;
+  EmbreeHandle& operator=(const EmbreeHandle&) = delete;
+  ~EmbreeHandle() {
+    if (handle_) kRelease(handle_);
+  }
+  Handle get() const { return handle_; }
+
+ private:
+  Handle handle_ = nullptr;
+};
+
+using EmbreeDevice = EmbreeHandle<RTCDevice, rtcReleaseDevice>;
+using EmbreeScene = EmbreeHandle<RTCScene, rtcReleaseScene>;
+using EmbreeGeometry = EmbreeHandle<RTCGeometry, rtcReleaseGeometry>;
+
+/// Nearest hit of `ray_hit.ray`; `ray_hit.hit.geomID` is RTC_INVALID_GEOMETRY_ID if there is none.
+inline void intersectClosest(RTCScene scene, RTCRayHit& ray_hit, bool coherent = false) {
+#if NEPHROID_EMBREE_MAJOR >= 4
+  RTCIntersectArguments arguments;
+  rtcInitIntersectArguments(&arguments);
+  arguments.flags = coherent ? RTC_RAY_QUERY_FLAG_COHERENT : RTC_RAY_QUERY_FLAG_INCOHERENT;
+  rtcIntersect1(scene, &ray_hit, &arguments);
+#else
+  RTCIntersectContext context;
+  rtcInitIntersectContext(&context);
+  context.flags = coherent ? RTC_INTERSECT_CONTEXT_FLAG_COHERENT : RTC_INTERSECT_CONTEXT_FLAG_INCOHERENT;
+  rtcIntersect1(scene, &context, &ray_hit);
+#endif
+}
+
+/// True if anything lies on the ray; `ray.tfar` is −infinity afterwards if so.
+inline bool intersectAny(RTCScene scene, RTCRay& ray) {
+#if NEPHROID_EMBREE_MAJOR >= 4
+  rtcOccluded1(scene, &ray);
+#else
+  RTCIntersectContext context;
+  rtcInitIntersectContext(&context);
+  rtcOccluded1(scene, &context, &ray);
+#endif
+  return ray.tfar < 0.0F;
+}
+
+}  // namespace nephroid

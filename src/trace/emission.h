@@ -1,0 +1,96 @@
+// Photon emission: who gets a photon, aimed at the generators without bias.
+//
+// Every light has an emission domain: a set of rays that holds every ray from the light to any target triangle, and as
+// few others as is cheap to find out. A photon carries (flux density of the ray) / (density of drawing it), so what the
+// domain leaves out is only what could not meet a target, and the sum over photons is the flux through the domain.
+//
+//   sun          a plane perpendicular to it, in cells; those that a target's shadow may touch are kept
+//   point, spot  the sphere of directions, in equal-area cells; ditto
+//   mesh         a point by area, then a direction into one of the cones about the target clusters
+//   environment  a direction by radiance, then a point on one of the target clusters' discs
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "core/math.h"
+#include "core/sampling/sampler.h"
+#include "trace/interior.h"
+#include "trace/light_set.h"
+#include "trace/trace_scene.h"
+
+namespace nephroid {
+
+/// A photon as it leaves its light.
+struct EmittedPhoton {
+  vec3 origin;
+  vec3 dir;         ///< unit, along the travel of light
+  vec3 flux{0.0F};  ///< W, as if one photon were emitted: divide by the emitted count. 0: leaves outside the light's lobe
+};
+
+/// Boxes, spheres and triangles to aim at.
+class EmissionTargets {
+ public:
+  /// @param is_target  by instance
+  EmissionTargets(const TraceScene& scene, const std::vector<bool>& is_target);
+  bool empty() const { return bounds_.empty(); }
+  const Bounds& bounds() const { return bounds_; }
+
+  struct Sphere {
+    vec3 centre;
+    float radius;
+  };
+  /// Bounding spheres of clusters of triangles, at most kMaxClusters.
+  const std::vector<Sphere>& clusters() const { return clusters_; }
+  /// Calls `visit(corners)` for every target triangle, world space.
+  template <class Visit>
+  void visitTriangles(Visit&& visit) const {
+    for (const std::uint32_t instance : instances_) {
+      for (std::uint32_t t = 0; t < scene_.triangleCountOf(instance); ++t) {
+        vec3 p[3];
+        scene_.triangleCorners(instance, t, p);
+        visit(p);
+      }
+    }
+  }
+  static constexpr int kMaxClusters = 64;
+
+ private:
+  void buildClusters();
+  const TraceScene& scene_;
+  std::vector<std::uint32_t> instances_;
+  Bounds bounds_;
+  std::vector<Sphere> clusters_;
+};
+
+/// Emits the photons of one light. Immutable; safe from any thread.
+class Emitter {
+ public:
+  virtual ~Emitter() = default;
+  virtual EmittedPhoton emit(Sampler& sampler) const = 0;
+  /// Flux through the domain, W: exact for punctual lights, estimated from a pilot for the others. For sharing photons
+  /// among lights, not for scaling them.
+  vec3 expectedFlux() const { return expected_flux_; }
+  const std::string& name() const { return name_; }
+  /// Media that the light itself is inside of.
+  const InteriorList& interior() const { return interior_; }
+
+ protected:
+  friend std::vector<std::unique_ptr<Emitter>> makeEmitters(const TraceScene&, const MaterialTable&, const LightSet&,
+                                                            const EmissionTargets&);
+  std::string name_;
+  vec3 expected_flux_{0.0F};
+  InteriorList interior_;
+};
+
+/// One emitter per light that can reach a target; none if there is no target.
+std::vector<std::unique_ptr<Emitter>> makeEmitters(const TraceScene& scene, const MaterialTable& materials,
+                                                   const LightSet& lights, const EmissionTargets& targets);
+
+/// The solids that `position` is inside of: follows a ray to infinity and notes every surface that it leaves without
+/// having entered. Open interfaces count by their normals, so "under water" needs no lid.
+InteriorList findInterior(const TraceScene& scene, vec3 position);
+
+}  // namespace nephroid

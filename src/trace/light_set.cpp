@@ -1,0 +1,287 @@
+#include "trace/light_set.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/sampling/warp.h"
+
+namespace nephroid {
+namespace {
+
+/// Weight of a texel in the table: luminance spread over its neighbours, so that wherever the bilinear look-up is
+/// above zero the density is too, times the solid angle of its row.
+std::vector<float> tabulateEnvironment(const Image& image) {
+  std::vector<float> weights(static_cast<std::size_t>(image.width) * image.height);
+  const auto luminanceAt = [&](int x, int y) {
+    x = (x + image.width) % image.width;
+    y = std::clamp(y, 0, image.height - 1);
+    return std::max(luminance(image.rgb(x, y)), 0.0F);
+  };
+  static constexpr float kTent[3] = {0.25F, 0.5F, 0.25F};
+  for (int y = 0; y < image.height; ++y) {
+    const float sin_theta = std::sin(kPi * (static_cast<float>(y) + 0.5F) / static_cast<float>(image.height));
+    for (int x = 0; x < image.width; ++x) {
+      float sum = 0.0F;
+      for (int dy = -1; dy <= 1; ++dy)
+        for (int dx = -1; dx <= 1; ++dx) sum += kTent[dx + 1] * kTent[dy + 1] * luminanceAt(x + dx, y + dy);
+      weights[static_cast<std::size_t>(y) * image.width + x] = sum * sin_theta;
+    }
+  }
+  return weights;
+}
+
+float meanOverSphere(const Image& image) {
+  double sum = 0.0, weight = 0.0;
+  for (int y = 0; y < image.height; ++y) {
+    const double sin_theta = std::sin(kPi * (y + 0.5) / image.height);
+    for (int x = 0; x < image.width; ++x) sum += sin_theta * luminance(image.rgb(x, y));
+    weight += sin_theta * image.width;
+  }
+  return weight > 0.0 ? static_cast<float>(sum / weight) : 0.0F;
+}
+
+}  // namespace
+
+vec3 intensityAlong(const Light& light, vec3 dir) {
+  if (light.kind != LightKind::kSpot) return light.intensity;
+  // glTF's KHR_lights_punctual: the squared linear ramp between the cosines of the two cones.
+  const float cos_outer = std::cos(light.outer_cone), cos_inner = std::cos(light.inner_cone);
+  const float ramp = (dot(dir, light.direction) - cos_outer) / std::max(cos_inner - cos_outer, 1e-4F);
+  const float t = std::clamp(ramp, 0.0F, 1.0F);
+  return light.intensity * (t * t);
+}
+
+double sunOneMinusCos(const Light& sun) {
+  const double half = 0.5 * radians(sun.angle_deg);
+  const double s = std::sin(0.5 * half);
+  return 2.0 * s * s;  // 1 − cos without cancellation
+}
+
+vec3 sunRadiance(const Light& sun) {
+  const double s = std::sin(0.5 * radians(sun.angle_deg));
+  return sun.intensity * static_cast<float>(1.0 / (kPi * s * s));
+}
+
+EnvironmentMap::EnvironmentMap(const Environment& environment)
+    : environment_(environment),
+      cos_rotation_(std::cos(radians(environment.rotation_deg))),
+      sin_rotation_(std::sin(radians(environment.rotation_deg))),
+      distribution_(environment.radiance->width, environment.radiance->height,
+                    tabulateEnvironment(*environment.radiance)),
+      mean_luminance_(meanOverSphere(*environment.radiance) * environment.scale) {}
+
+vec2 EnvironmentMap::uvFromDir(vec3 dir) const {
+  const float x = dir.x * cos_rotation_ - dir.z * sin_rotation_;
+  const float z = dir.x * sin_rotation_ + dir.z * cos_rotation_;
+  const float u = 0.5F + std::atan2(x, -z) * (0.5F / kPi);
+  return {u - std::floor(u), std::acos(std::clamp(dir.y, -1.0F, 1.0F)) * (1.0F / kPi)};
+}
+
+vec3 EnvironmentMap::radiance(vec3 dir_to) const {
+  const Image& image = *environment_.radiance;
+  const vec2 uv = uvFromDir(dir_to);
+  const float x = uv.x * static_cast<float>(image.width) - 0.5F, y = uv.y * static_cast<float>(image.height) - 0.5F;
+  const float left = std::floor(x), top = std::floor(y);
+  const float fx = x - left, fy = y - top;
+  const int i = static_cast<int>(left), j = static_cast<int>(top);
+  const auto texel = [&](int dx, int dy) {
+    return image.rgb((i + dx + image.width) % image.width, std::clamp(j + dy, 0, image.height - 1));
+  };
+  return environment_.scale * ((1 - fy) * ((1 - fx) * texel(0, 0) + fx * texel(1, 0)) +
+                               fy * ((1 - fx) * texel(0, 1) + fx * texel(1, 1)));
+}
+
+vec3 EnvironmentMap::sample(vec2 u, float& pdf_solid_angle) const {
+  const auto [uv, pdf_square] = distribution_.sample(u);
+  const float phi = (uv.x - 0.5F) * 2.0F * kPi, theta = uv.y * kPi;
+  const float sin_theta = std::sin(theta);
+  const float x = sin_theta * std::sin(phi), z = -sin_theta * std::cos(phi);
+  pdf_solid_angle = sin_theta > 0.0F ? pdf_square / (2.0F * kPi * kPi * sin_theta) : 0.0F;
+  return {x * cos_rotation_ + z * sin_rotation_, std::cos(theta), -x * sin_rotation_ + z * cos_rotation_};
+}
+
+float EnvironmentMap::pdf(vec3 dir_to) const {
+  const float sin_theta = std::sqrt(std::max(1.0F - dir_to.y * dir_to.y, 0.0F));
+  return sin_theta > 0.0F ? distribution_.pdf(uvFromDir(dir_to)) / (2.0F * kPi * kPi * sin_theta) : 0.0F;
+}
+
+LightSet::LightSet(const TraceScene& scene, const MaterialTable& materials) : scene_(scene), materials_(materials) {
+  const SceneData& data = scene.scene();
+  const double radius = std::max(scene.bounds().radius(), 1e-30F);
+  probability_of_punctual_.assign(data.lights.size(), 0.0F);
+  for (std::size_t i = 0; i < data.lights.size(); ++i) {
+    const Light& light = data.lights[i];
+    const double brightness = luminance(light.intensity);
+    if (!(brightness > 0.0)) continue;
+    const bool is_sun = light.kind == LightKind::kSun;
+    addEntry(Kind::kPunctual, i, brightness * (is_sun ? kPi * radius * radius : 4.0 * kPi));
+    if (is_sun && light.angle_deg > 0.0F) suns_.push_back(static_cast<std::uint32_t>(i));
+    if (!is_sun && light.radius > 0.0F) spheres_.push_back(static_cast<std::uint32_t>(i));
+  }
+  mesh_light_of_instance_.assign(data.instances.size(), kNone);
+  for (std::uint32_t i = 0; i < data.instances.size(); ++i) {
+    const Material& material = scene.materialOf(i);
+    if (!material.emits()) continue;
+    std::vector<float> areas;
+    for (std::uint32_t t = 0; t < scene.triangleCountOf(i); ++t) {
+      vec3 p[3];
+      scene.triangleCorners(i, t, p);
+      areas.push_back(0.5F * length(cross(p[1] - p[0], p[2] - p[0])));
+    }
+    double area = 0.0;
+    for (const float a : areas) area += a;
+    if (!(area > 0.0)) continue;
+    mesh_light_of_instance_[i] = static_cast<std::uint32_t>(mesh_lights_.size());
+    mesh_lights_.push_back({i, Distribution1D(areas), area, material.emission, material.double_sided});
+    addEntry(Kind::kMesh, mesh_lights_.size() - 1, luminance(material.emission) * kPi * area);
+  }
+  if (data.environment && data.environment->radiance) {
+    environment_.emplace(*data.environment);
+    addEntry(Kind::kEnvironment, 0, environment_->meanRadiance() * 4.0 * kPi * kPi * radius * radius);
+  }
+  if (entries_.empty()) return;
+  // Half by power, half evenly: a weak light near a receiver may matter more there than a strong one far away.
+  double total = 0.0;
+  for (const double w : weights_) total += w;
+  std::vector<float> choice;
+  for (const double w : weights_)
+    choice.push_back(static_cast<float>(total > 0.0 ? 0.5 * w / total + 0.5 / static_cast<double>(weights_.size()) : 1.0));
+  choice_.emplace(choice);
+  mesh_probability_.assign(mesh_lights_.size(), 0.0F);
+  for (std::size_t e = 0; e < entries_.size(); ++e) {
+    Entry& entry = entries_[e];
+    entry.probability = choice_->probability(e);
+    if (entry.kind == Kind::kPunctual) probability_of_punctual_[entry.index] = entry.probability;
+    if (entry.kind == Kind::kMesh) mesh_probability_[entry.index] = entry.probability;
+    if (entry.kind == Kind::kEnvironment) environment_probability_ = entry.probability;
+  }
+}
+
+void LightSet::addEntry(Kind kind, std::size_t index, double weight) {
+  entries_.push_back({kind, static_cast<std::uint32_t>(index), 0.0F});
+  weights_.push_back(weight);
+}
+
+std::optional<LightSample> LightSet::sample(vec3 position, float u_choice, vec2 u) const {
+  if (entries_.empty()) return std::nullopt;
+  const Entry& entry = entries_[choice_->sample(u_choice).index];
+  std::optional<LightSample> s;
+  if (entry.kind == Kind::kPunctual) {
+    s = samplePunctual(scene_.scene().lights[entry.index], position, u);
+  } else if (entry.kind == Kind::kMesh) {
+    s = sampleMesh(mesh_lights_[entry.index], position, u);
+  } else {
+    s.emplace();
+    s->dir = environment_->sample(u, s->pdf);
+    s->distance = kInfinity;
+    s->radiance = environment_->radiance(s->dir);
+  }
+  if (!s || !(s->pdf > 0.0F)) return std::nullopt;
+  s->pdf *= entry.probability;
+  return s;
+}
+
+std::optional<LightSample> LightSet::samplePunctual(const Light& light, vec3 position, vec2 u) const {
+  LightSample s;
+  if (light.kind == LightKind::kSun) {
+    s.distance = kInfinity;
+    if (light.angle_deg > 0.0F) {
+      const auto one_minus_cos = static_cast<float>(sunOneMinusCos(light));
+      s.dir = Frame::fromZ(-light.direction).toWorld(sampleUniformCone(u, one_minus_cos));
+      s.pdf = 1.0F / (2.0F * kPi * one_minus_cos);
+      s.radiance = sunRadiance(light);
+    } else {
+      s.dir = -light.direction;
+      s.delta = true;
+      s.pdf = 1.0F;
+      s.radiance = light.intensity;
+    }
+    return s;
+  }
+  const vec3 to_centre = light.position - position;
+  const float squared = dot(to_centre, to_centre);
+  if (!(squared > light.radius * light.radius) || squared == 0.0F) return std::nullopt;
+  const float centre_distance = std::sqrt(squared);
+  if (light.radius == 0.0F) {
+    s.dir = to_centre / centre_distance;
+    s.distance = centre_distance;
+    s.delta = true;
+    s.pdf = 1.0F;
+    s.radiance = intensityAlong(light, -s.dir) / squared;
+    return s;
+  }
+  // The cone that the sphere subtends, uniformly; 1 − cos from sin² without cancellation.
+  const float sin2 = light.radius * light.radius / squared;
+  const float one_minus_cos = sin2 / (1.0F + std::sqrt(1.0F - sin2));
+  s.dir = Frame::fromZ(to_centre / centre_distance).toWorld(sampleUniformCone(u, one_minus_cos));
+  const float along = dot(to_centre, s.dir);
+  const vec3 beside = to_centre - along * s.dir;
+  const float half_chord = std::sqrt(std::max(light.radius * light.radius - dot(beside, beside), 0.0F));
+  s.distance = along - half_chord;
+  s.pdf = 1.0F / (2.0F * kPi * one_minus_cos);
+  s.radiance = intensityAlong(light, -s.dir) / (kPi * light.radius * light.radius);
+  return s;
+}
+
+std::optional<LightSample> LightSet::sampleMesh(const MeshLight& light, vec3 position, vec2 u) const {
+  const auto choice = light.triangles.sample(u.x);
+  const auto triangle = static_cast<std::uint32_t>(choice.index);
+  const vec3 barycentrics = sampleUniformTriangle(vec2(std::min(choice.offset, kOneMinusEpsilon), u.y));
+  vec3 p[3];
+  scene_.triangleCorners(light.instance, triangle, p);
+  const vec3 target = p[0] + barycentrics.y * (p[1] - p[0]) + barycentrics.z * (p[2] - p[0]);
+  const vec3 to = target - position;
+  const float squared = dot(to, to);
+  if (!(squared > 0.0F)) return std::nullopt;
+  LightSample s;
+  s.distance = std::sqrt(squared);
+  s.dir = to / s.distance;
+  const vec3 normal = normalize(cross(p[1] - p[0], p[2] - p[0]));
+  const float cos_light = -dot(normal, s.dir);
+  if (cos_light == 0.0F || (cos_light < 0.0F && !light.double_sided)) return std::nullopt;
+  s.pdf = static_cast<float>(squared / (std::abs(cos_light) * light.area));
+  SurfacePoint point{};
+  point.instance = light.instance, point.triangle = triangle;
+  point.u = barycentrics.y, point.v = barycentrics.z;
+  s.radiance = materials_.emission(point, cos_light > 0.0F);
+  return s;
+}
+
+LightSet::Met LightSet::metSurface(vec3 vertex, const SurfacePoint& point, vec3 dir) const {
+  Met met;
+  const std::uint32_t index = mesh_light_of_instance_[point.instance];
+  if (index == kNone) return met;
+  const float cos_light = -dot(point.normal_geometric, dir);
+  met.radiance = materials_.emission(point, cos_light > 0.0F);
+  const vec3 to = point.position - vertex;
+  if (cos_light != 0.0F)
+    met.pdf = static_cast<float>(dot(to, to) / (std::abs(cos_light) * mesh_lights_[index].area)) * mesh_probability_[index];
+  return met;
+}
+
+LightSet::Met LightSet::metSun(vec3 dir, std::uint32_t which) const {
+  const Light& sun = scene_.scene().lights[which];
+  const auto one_minus_cos = static_cast<float>(sunOneMinusCos(sun));
+  // 1 − cos of the angle from half the squared chord: exact for the small angles of a sun.
+  const vec3 chord = dir + sun.direction;
+  if (0.5F * dot(chord, chord) > one_minus_cos) return {};
+  return {sunRadiance(sun), probability_of_punctual_[which] / (2.0F * kPi * one_minus_cos)};
+}
+
+LightSet::Met LightSet::metSphere(vec3 vertex, const Ray& ray, float t_max, std::uint32_t which) const {
+  const Light& light = scene_.scene().lights[which];
+  const vec3 to_centre = light.position - ray.origin;
+  const float along = dot(to_centre, ray.dir);
+  const float squared = dot(to_centre, to_centre), radius_squared = light.radius * light.radius;
+  if (along <= 0.0F || squared <= radius_squared) return {};
+  const vec3 beside = to_centre - along * ray.dir;
+  const float room = radius_squared - dot(beside, beside);
+  if (room < 0.0F || along - std::sqrt(room) >= t_max) return {};
+  const vec3 from_vertex = light.position - vertex;
+  const float sin2 = std::min(radius_squared / dot(from_vertex, from_vertex), 1.0F);
+  const float one_minus_cos = sin2 / (1.0F + std::sqrt(1.0F - sin2));
+  return {intensityAlong(light, ray.dir) / (kPi * radius_squared),
+          probability_of_punctual_[which] / (2.0F * kPi * one_minus_cos)};
+}
+
+}  // namespace nephroid

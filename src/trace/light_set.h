@@ -1,0 +1,128 @@
+// All light of a scene as a path sees it from the eye: sampled towards a point, and met by chance.
+//
+// Punctual lights with a size are spheres (point, spot) or discs at infinity (sun); every emissive instance is one
+// entry with a table over its triangles; the environment is one entry with a table over its texels.
+#pragma once
+
+#include <memory>
+#include <optional>
+#include <vector>
+
+#include "core/math.h"
+#include "core/sampling/distribution.h"
+#include "trace/surface_material.h"
+#include "trace/trace_scene.h"
+
+namespace nephroid {
+
+/// Light sampled towards a point.
+struct LightSample {
+  vec3 dir;                 ///< unit, from the point to the light
+  float distance = 0;       ///< m; infinite for sun and environment
+  vec3 radiance{0.0F};      ///< W/m²/sr; for delta lights the irradiance on a surface facing it, W/m²
+  float pdf = 0.0F;         ///< per solid angle, choice of light included; for delta lights the probability of the choice
+  bool delta = false;       ///< cannot be met by chance
+};
+
+/// Radiance of a punctual light, W/sr, along `dir` (travel): the spot's cone applied.
+vec3 intensityAlong(const Light& light, vec3 dir);
+
+/// Texels of an environment in world directions.
+class EnvironmentMap {
+ public:
+  explicit EnvironmentMap(const Environment& environment);
+  vec3 radiance(vec3 dir_to) const;                       ///< from the direction `dir_to` points to
+  vec3 sample(vec2 u, float& pdf_solid_angle) const;      ///< a direction to the environment
+  float pdf(vec3 dir_to) const;                           ///< of `sample`, per solid angle
+  float meanRadiance() const { return mean_luminance_; }  ///< luminance, averaged over the sphere
+  const Environment& source() const { return environment_; }
+
+ private:
+  vec2 uvFromDir(vec3 dir) const;
+  Environment environment_;
+  float cos_rotation_, sin_rotation_;
+  Distribution2D distribution_;
+  float mean_luminance_ = 0.0F;
+};
+
+class LightSet {
+ public:
+  LightSet(const TraceScene& scene, const MaterialTable& materials);
+
+  bool empty() const { return entries_.empty(); }
+  /// @param u_choice picks the light, @param u the place on it
+  std::optional<LightSample> sample(vec3 position, float u_choice, vec2 u) const;
+
+  /// Light met by chance: radiance, and the density with which `sample` would have found the same direction. Where
+  /// several lights lie behind each other, each is met on its own, as each is sampled on its own.
+  struct Met {
+    vec3 radiance{0.0F};
+    float pdf = 0.0F;
+  };
+  /// @param vertex  where the path last scattered
+  Met metSurface(vec3 vertex, const SurfacePoint& point, vec3 dir) const;
+  /// Calls `visit(Met)` for every sun and for the environment seen along a ray that left the scene.
+  template <class Visit>
+  void visitInfinity(vec3 dir, Visit&& visit) const {
+    for (const std::uint32_t i : suns_) {
+      const Met met = metSun(dir, i);
+      if (met.pdf > 0.0F) visit(met);
+    }
+    if (environment_) visit(Met{environment_->radiance(dir), environment_probability_ * environment_->pdf(dir)});
+  }
+  /// Calls `visit(Met)` for every sphere light that the ray enters before `t_max`. The spheres shine but block nothing,
+  /// neither rays nor photons: they stand for a filament, not for a body.
+  /// @param vertex  where the path last scattered: `sample` would have been called there
+  template <class Visit>
+  void visitSpheres(vec3 vertex, const Ray& ray, float t_max, Visit&& visit) const {
+    for (const std::uint32_t i : spheres_) {
+      const Met met = metSphere(vertex, ray, t_max, i);
+      if (met.pdf > 0.0F) visit(met);
+    }
+  }
+
+  const EnvironmentMap* environment() const { return environment_ ? &*environment_ : nullptr; }
+
+  /// One emissive instance.
+  struct MeshLight {
+    std::uint32_t instance;
+    Distribution1D triangles;  ///< by area
+    double area;               ///< m²
+    vec3 mean_emission;        ///< W/m²/sr, textures ignored
+    bool double_sided;
+  };
+  const std::vector<MeshLight>& meshLights() const { return mesh_lights_; }
+
+ private:
+  enum class Kind : std::uint8_t { kPunctual, kMesh, kEnvironment };
+  struct Entry {
+    Kind kind;
+    std::uint32_t index;
+    float probability;
+  };
+  void addEntry(Kind kind, std::size_t index, double weight);
+  Met metSun(vec3 dir, std::uint32_t which) const;
+  Met metSphere(vec3 vertex, const Ray& ray, float t_max, std::uint32_t which) const;
+  std::optional<LightSample> samplePunctual(const Light& light, vec3 position, vec2 u) const;
+  std::optional<LightSample> sampleMesh(const MeshLight& light, vec3 position, vec2 u) const;
+
+  const TraceScene& scene_;
+  const MaterialTable& materials_;
+  std::vector<MeshLight> mesh_lights_;
+  std::vector<std::uint32_t> mesh_light_of_instance_;
+  std::vector<float> probability_of_punctual_;
+  std::vector<std::uint32_t> spheres_, suns_;  ///< indices into SceneData::lights
+  std::optional<EnvironmentMap> environment_;
+  float environment_probability_ = 0.0F;
+  std::vector<float> mesh_probability_;
+  std::vector<Entry> entries_;
+  std::vector<double> weights_;
+  std::optional<Distribution1D> choice_;
+};
+
+/// 1 − cos of half the sun's angular diameter.
+double sunOneMinusCos(const Light& sun);
+/// Radiance of a sun of finite size such that the irradiance perpendicular to it is `intensity`: E⊥ / (π sin²θ).
+vec3 sunRadiance(const Light& sun);
+
+}  // namespace nephroid

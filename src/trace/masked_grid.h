@@ -1,0 +1,68 @@
+// A unit square cut into cells of which some are marked; samples fall on the marked ones only, evenly by area.
+#pragma once
+
+#include <algorithm>
+#include <cstdint>
+#include <vector>
+
+#include "core/math.h"
+
+namespace nephroid {
+
+class MaskedGrid {
+ public:
+  MaskedGrid(int width, int height)
+      : width_(width), height_(height), marked_(static_cast<std::size_t>(width) * height, 0) {}
+  int width() const { return width_; }
+  int height() const { return height_; }
+  void mark(int x, int y) { marked_[static_cast<std::size_t>(y) * width_ + x] = 1; }
+  bool isMarked(int x, int y) const { return marked_[static_cast<std::size_t>(y) * width_ + x] != 0; }
+
+  /// Ends marking. Cells are listed row by row, so that stratified numbers stay stratified over the marked area.
+  void finish() {
+    cells_.clear();
+    row_begin_.assign(1, 0);
+    for (int y = 0; y < height_; ++y) {
+      for (int x = 0; x < width_; ++x)
+        if (isMarked(x, y)) cells_.push_back(static_cast<std::uint32_t>(x));
+      row_begin_.push_back(static_cast<std::uint32_t>(cells_.size()));
+    }
+  }
+  std::size_t markedCount() const { return cells_.size(); }
+  /// Marked share of the square: 1 / density of `sample`.
+  double markedFraction() const {
+    return static_cast<double>(cells_.size()) / (static_cast<double>(width_) * static_cast<double>(height_));
+  }
+  /// A point of the marked cells: the row by u.y, the place in the row by u.x. @pre markedCount() > 0
+  vec2 sample(vec2 u) const {
+    // Doubles: a float has too few bits to tell places within one of a million cells.
+    const double along = static_cast<double>(u.y) * static_cast<double>(cells_.size());
+    const auto target = std::min(static_cast<std::uint32_t>(along), static_cast<std::uint32_t>(cells_.size() - 1));
+    const auto next = std::upper_bound(row_begin_.begin(), row_begin_.end(), target);
+    const auto row = static_cast<std::uint32_t>(next - row_begin_.begin()) - 1;
+    const std::uint32_t begin = row_begin_[row], count = *next - begin;
+    const double in_row = static_cast<double>(u.x) * count;
+    const std::uint32_t cell = std::min(static_cast<std::uint32_t>(in_row), count - 1);
+    return {static_cast<float>((cells_[begin + cell] + (in_row - cell)) / width_),
+            static_cast<float>((row + (along - begin) / count) / height_)};
+  }
+
+ private:
+  int width_, height_;
+  std::vector<std::uint8_t> marked_;
+  std::vector<std::uint32_t> cells_;      ///< column of each marked cell, row by row
+  std::vector<std::uint32_t> row_begin_;  ///< height + 1 offsets into cells_
+};
+
+/// Equal-area map of the square [0, 1]² onto the spherical cap about +z: concentric disc, then lifted.
+/// @param one_minus_cos  1 − cos of the cap's half-angle, in (0, 2]; 2 is the whole sphere
+vec3 capFromSquare(vec2 uv, float one_minus_cos);
+
+/// Marks every cell of `grid` that maps into one of `caps` through `capFromSquare`, and few others.
+struct DirectionCap {
+  vec3 axis;  ///< unit, in the frame of the grid's cap
+  float cos_angle, sin_angle;
+};
+void markCaps(MaskedGrid& grid, float one_minus_cos, std::vector<DirectionCap> caps);
+
+}  // namespace nephroid

@@ -1,0 +1,62 @@
+// A material at one point: textures and vertex colours resolved, constants of its optics prepared.
+#pragma once
+
+#include <vector>
+
+#include "core/math.h"
+#include "scene/scene_data.h"
+#include "trace/trace_scene.h"
+
+namespace nephroid {
+
+/// Below this microfacet width a lobe is a mirror in single precision: its half-width is under 0.02 degrees.
+inline constexpr float kDeltaAlpha = 5e-4F;
+
+struct SurfaceMaterial {
+  const Material* source = nullptr;
+  vec3 base{1.0F};
+  float coverage = 1.0F;  ///< share of the surface that is there (alpha mask or blend); the rest is a hole
+  float metallic = 0.0F;
+  float alpha = 1.0F;        ///< microfacet width; 0: smooth
+  float transmission = 0.0F;
+  float gloss = 0.0F;        ///< weight of the dielectric specular lobe, see `glossOf`
+  vec3 specular_tint{1.0F};  ///< KHR_materials_specular
+  bool is_solid = false;     ///< bounds a medium of another index
+  bool is_pane = false;      ///< transmits, thin-walled
+};
+
+/// Weight of the dielectric specular lobe over a base that does not transmit: 1 up to the alpha at which a lobe stops
+/// being specular (0.25), then falling linearly to 0 at alpha 1. So a fully rough dielectric is exactly Lambertian and
+/// its base colour is its whole albedo, which is what authors mean by roughness 1 and what measured albedos state;
+/// single-scattering GGX at alpha 1 would add about 1.4 % of a Lambertian lobe and take 4 to 9 % from the base.
+float glossOf(float alpha, float transmission);
+
+/// Hemispherical average of the Fresnel reflectance towards a medium of relative index `ior` (to / from), tabulated.
+float averageFresnel(float ior);
+
+/// All materials of a scene, resolved once where nothing varies over the surface.
+class MaterialTable {
+ public:
+  explicit MaterialTable(const TraceScene& scene);
+  /// The material at a point; `scratch` holds the result where it varies.
+  const SurfaceMaterial& at(const SurfacePoint& point, SurfaceMaterial& scratch) const;
+  /// Emitted radiance towards the side of `outward` (true: the side of the geometric normal).
+  vec3 emission(const SurfacePoint& point, bool outward) const;
+  /// True if some surface lets straight rays through (panes, cut-outs): shadow rays must then look at what they meet.
+  bool anyPassable() const { return any_passable_; }
+
+ private:
+  SurfaceMaterial resolve(const Material& material, const SurfacePoint* point) const;
+
+  const TraceScene& scene_;
+  std::vector<SurfaceMaterial> constant_;  ///< by material index
+  std::vector<bool> varies_;               ///< by instance: textures or vertex colours
+  bool any_passable_ = false;
+};
+
+/// What goes straight through a surface without an event: holes and smooth thin-walled transmission,
+/// baseColor·(1 − R′), R′ = 2R/(1 + R) (DESIGN §2).
+/// @param cos_theta  |cosine| of incidence, @param ior_outside  of the medium on both sides
+vec3 passTransmittance(const SurfaceMaterial& material, float cos_theta, float ior_outside);
+
+}  // namespace nephroid

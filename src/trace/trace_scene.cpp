@@ -1,0 +1,263 @@
+#include "trace/trace_scene.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <map>
+
+#include "nephroid/error.h"
+#include "trace/texture.h"
+
+namespace nephroid {
+namespace {
+
+/// Relative bound of the rounding of an interpolated position: three products and two sums of coordinates (about
+/// 4 ulp), the affine transform of an instance (4 more) and Embree's intersection in single precision. 2^-19 is 16 ulp:
+/// large enough that a new ray does not meet its own surface, small against any thickness that is modelled.
+constexpr float kPositionErrorScale = 0x1p-19F;
+
+/// Rays start a hair off zero: on a plane through the world's origin coordinates are exact, the offset is zero, and
+/// Embree counts a hit at distance zero. No length: any positive number serves.
+constexpr float kRayStart = 1e-30F;
+
+void onEmbreeError(void* /*user*/, RTCError code, const char* text) {
+  // Embree calls this from inside its API; the state is read back by checkEmbree. Only memory failures can be the
+  // world's fault here, and they must not pass silently.
+  if (code == RTC_ERROR_OUT_OF_MEMORY)
+    throw ResourceError(fmt::format("out of memory while building the acceleration structure ({})", text ? text : ""));
+}
+
+void checkEmbree(RTCDevice device, const char* what) {
+  const RTCError code = rtcGetDeviceError(device);
+  if (code == RTC_ERROR_NONE) return;
+  if (code == RTC_ERROR_OUT_OF_MEMORY) throw ResourceError(fmt::format("out of memory while {}", what));
+  throw InternalError(fmt::format("Embree error {} while {}", static_cast<int>(code), what));
+}
+
+vec3 interpolate(const vec3* values, const uvec3& triangle, float u, float v) {
+  return (1.0F - u - v) * values[triangle.x] + u * values[triangle.y] + v * values[triangle.z];
+}
+
+}  // namespace
+
+TraceScene::TraceScene(const SceneData& scene) : scene_(scene) {
+  buildPlaced();
+  buildEmbree();
+}
+
+TraceScene::~TraceScene() = default;
+
+void TraceScene::buildPlaced() {
+  std::vector<int> uses(scene_.meshes.size(), 0);
+  for (const Instance& instance : scene_.instances) ++uses[instance.mesh];
+  std::map<std::pair<std::uint32_t, std::uint32_t>, std::uint32_t> solids;
+  placed_.resize(scene_.instances.size());
+  for (std::size_t i = 0; i < placed_.size(); ++i) {
+    const Instance& instance = scene_.instances[i];
+    const Mesh& mesh = scene_.meshes[instance.mesh];
+    Placed& placed = placed_[i];
+    placed.mesh = &mesh;
+    placed.material_index = mesh.material;
+    placed.material = &scene_.materials[mesh.material];
+    placed.triangles = mesh.triangles;
+    placed.world_from_object = instance.world_from_object;
+    placed.normal_from_object = glm::transpose(glm::inverse(mat3(instance.world_from_object)));
+    placed.mirrored = glm::determinant(mat3(instance.world_from_object)) < 0.0F;
+    placed.baked = uses[instance.mesh] == 1;
+    placed.solid = solids.try_emplace({instance.object, mesh.material}, static_cast<std::uint32_t>(solids.size()))
+                       .first->second;
+    placed.positions = mesh.positions.data();
+    placed.normals = mesh.normals.empty() ? nullptr : mesh.normals.data();
+    for (const vec3& p : mesh.positions) bounds_.add(transformPoint(instance.world_from_object, p));
+    if (!placed.baked) continue;
+    placed.world_positions.reserve(mesh.positions.size());
+    for (const vec3& p : mesh.positions)
+      placed.world_positions.push_back(transformPoint(instance.world_from_object, p));
+    placed.positions = placed.world_positions.data();
+    if (!placed.normals) continue;
+    placed.world_normals.reserve(mesh.normals.size());
+    for (const vec3& n : mesh.normals) placed.world_normals.push_back(normalize(placed.normal_from_object * n));
+    placed.normals = placed.world_normals.data();
+  }
+}
+
+RTCGeometry TraceScene::makeTriangles(const Placed& placed, std::span<const vec3> positions) {
+  RTCGeometry geometry = rtcNewGeometry(device_.get(), RTC_GEOMETRY_TYPE_TRIANGLE);
+  // Embree reads 16 bytes at each vertex, so the last of a shared 12-byte array would be read past its end: copy.
+  auto* vertices = static_cast<vec3*>(rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3,
+                                                              sizeof(vec3), std::max<std::size_t>(positions.size(), 1)));
+  auto* indices =
+      static_cast<uvec3*>(rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3, sizeof(uvec3),
+                                                  std::max<std::size_t>(placed.triangles.size(), 1)));
+  if (!vertices || !indices) throw ResourceError("out of memory while copying triangles to the acceleration structure");
+  std::copy(positions.begin(), positions.end(), vertices);
+  std::copy(placed.triangles.begin(), placed.triangles.end(), indices);
+  if (placed.triangles.empty()) indices[0] = uvec3(0);
+  rtcCommitGeometry(geometry);
+  return geometry;
+}
+
+void TraceScene::buildEmbree() {
+  device_ = EmbreeDevice(rtcNewDevice("frequency_level=simd256"));
+  if (!device_.get()) throw InternalError("Embree cannot create a device");
+  rtcSetDeviceErrorFunction(device_.get(), onEmbreeError, nullptr);
+  top_ = EmbreeScene(rtcNewScene(device_.get()));
+  // Watertight edges: a photon that slips between two triangles of a lens would be a leak of light.
+  rtcSetSceneFlags(top_.get(), RTC_SCENE_FLAG_ROBUST);
+  rtcSetSceneBuildQuality(top_.get(), RTC_BUILD_QUALITY_HIGH);
+  mesh_scenes_.resize(scene_.meshes.size());
+  for (std::size_t i = 0; i < placed_.size(); ++i) {
+    const Placed& placed = placed_[i];
+    EmbreeGeometry geometry;
+    if (placed.baked) {
+      geometry = EmbreeGeometry(makeTriangles(placed, placed.world_positions));
+    } else {
+      EmbreeScene& shared = mesh_scenes_[scene_.instances[i].mesh];
+      if (!shared.get()) {
+        shared = EmbreeScene(rtcNewScene(device_.get()));
+        rtcSetSceneFlags(shared.get(), RTC_SCENE_FLAG_ROBUST);
+        rtcSetSceneBuildQuality(shared.get(), RTC_BUILD_QUALITY_HIGH);
+        const EmbreeGeometry triangles(makeTriangles(placed, placed.mesh->positions));
+        rtcAttachGeometry(shared.get(), triangles.get());
+        rtcCommitScene(shared.get());
+      }
+      geometry = EmbreeGeometry(rtcNewGeometry(device_.get(), RTC_GEOMETRY_TYPE_INSTANCE));
+      rtcSetGeometryInstancedScene(geometry.get(), shared.get());
+      rtcSetGeometryTransform(geometry.get(), 0, RTC_FORMAT_FLOAT4X4_COLUMN_MAJOR, &placed.world_from_object[0][0]);
+      rtcCommitGeometry(geometry.get());
+    }
+    const unsigned id = rtcAttachGeometry(top_.get(), geometry.get());
+    if (id >= instance_of_geometry_.size()) instance_of_geometry_.resize(id + 1, kNone);
+    instance_of_geometry_[id] = static_cast<std::uint32_t>(i);
+  }
+  rtcCommitScene(top_.get());
+  checkEmbree(device_.get(), "building the acceleration structure");
+}
+
+bool TraceScene::intersect(const Ray& ray, RayHit& hit, bool coherent) const {
+  RTCRayHit query;
+  query.ray.org_x = ray.origin.x, query.ray.org_y = ray.origin.y, query.ray.org_z = ray.origin.z;
+  query.ray.dir_x = ray.dir.x, query.ray.dir_y = ray.dir.y, query.ray.dir_z = ray.dir.z;
+  query.ray.tnear = kRayStart, query.ray.tfar = ray.t_max;
+  query.ray.time = 0.0F, query.ray.mask = ~0U, query.ray.id = 0, query.ray.flags = 0;
+  query.hit.geomID = RTC_INVALID_GEOMETRY_ID;
+  query.hit.instID[0] = RTC_INVALID_GEOMETRY_ID;
+  intersectClosest(top_.get(), query, coherent);
+  if (query.hit.geomID == RTC_INVALID_GEOMETRY_ID) return false;
+  const unsigned top_id = query.hit.instID[0] != RTC_INVALID_GEOMETRY_ID ? query.hit.instID[0] : query.hit.geomID;
+  hit.t = query.ray.tfar;
+  hit.instance = instance_of_geometry_[top_id];
+  hit.triangle = query.hit.primID;
+  hit.u = query.hit.u;
+  hit.v = query.hit.v;
+  return true;
+}
+
+bool TraceScene::occluded(const Ray& ray) const {
+  RTCRay query;
+  query.org_x = ray.origin.x, query.org_y = ray.origin.y, query.org_z = ray.origin.z;
+  query.dir_x = ray.dir.x, query.dir_y = ray.dir.y, query.dir_z = ray.dir.z;
+  query.tnear = kRayStart, query.tfar = ray.t_max;
+  query.time = 0.0F, query.mask = ~0U, query.id = 0, query.flags = 0;
+  return intersectAny(top_.get(), query);
+}
+
+SurfacePoint TraceScene::surfaceAt(const Ray& ray, const RayHit& hit) const {
+  const Placed& placed = placed_[hit.instance];
+  const uvec3& triangle = placed.triangles[hit.triangle];
+  const vec3 a = placed.positions[triangle.x], b = placed.positions[triangle.y], c = placed.positions[triangle.z];
+  SurfacePoint point;
+  point.instance = hit.instance, point.triangle = hit.triangle, point.u = hit.u, point.v = hit.v;
+  vec3 normal = cross(b - a, c - a);
+  point.position = a + hit.u * (b - a) + hit.v * (c - a);
+  vec3 magnitude = glm::max(glm::max(glm::abs(a), glm::abs(b)), glm::abs(c));
+  if (!placed.baked) {
+    point.position = transformPoint(placed.world_from_object, point.position);
+    normal = placed.normal_from_object * normal;
+    const mat4& m = placed.world_from_object;
+    const mat3 absolute(glm::abs(vec3(m[0])), glm::abs(vec3(m[1])), glm::abs(vec3(m[2])));
+    magnitude = absolute * magnitude + glm::abs(vec3(m[3]));
+  }
+  const float normal_length = length(normal);
+  // A triangle without area has no normal; any that faces the ray keeps the arithmetic finite.
+  point.normal_geometric = normal_length > 0.0F ? normal / normal_length : -ray.dir;
+  // The inverse transpose of a mirrored transform already turns object normals outward; world-space winding is reversed.
+  if (placed.mirrored && placed.baked) point.normal_geometric = -point.normal_geometric;
+  // Only the error across the surface matters: along it, the point is still on the surface.
+  point.position_error = kPositionErrorScale * dot(glm::abs(point.normal_geometric), magnitude);
+  point.normal_shading = point.normal_geometric;
+  if (placed.normals) {
+    vec3 interpolated = interpolate(placed.normals, triangle, hit.u, hit.v);
+    if (!placed.baked) interpolated = placed.normal_from_object * interpolated;
+    const float squared = dot(interpolated, interpolated);
+    if (squared > 0.0F) interpolated *= 1.0F / std::sqrt(squared);
+    if (dot(interpolated, point.normal_geometric) > 0.0F) point.normal_shading = interpolated;
+  }
+  if (placed.material->normal_texture.valid()) point.normal_shading = perturbNormal(placed, point, point.normal_shading);
+  return point;
+}
+
+vec3 TraceScene::perturbNormal(const Placed& placed, const SurfacePoint& point, vec3 normal) const {
+  const TextureRef& reference = placed.material->normal_texture;
+  const Mesh& mesh = *placed.mesh;
+  const uvec3& triangle = placed.triangles[point.triangle];
+  vec3 tangent(0), bitangent(0);
+  if (!mesh.tangents.empty() && reference.texcoord == 0) {
+    const vec4 t = (1.0F - point.u - point.v) * mesh.tangents[triangle.x] + point.u * mesh.tangents[triangle.y] +
+                   point.v * mesh.tangents[triangle.z];
+    tangent = transformVector(placed.world_from_object, vec3(t));
+    tangent -= dot(tangent, normal) * normal;
+    const float handedness = (placed.mirrored ? -1.0F : 1.0F) * (t.w < 0.0F ? -1.0F : 1.0F);
+    bitangent = handedness * cross(normal, tangent);
+  } else {
+    // From the derivative of the position by the texture coordinates of this triangle.
+    const auto& uvs = mesh.texcoords[reference.texcoord];
+    if (uvs.empty()) return normal;
+    vec3 corners[3];
+    for (int k = 0; k < 3; ++k)
+      corners[k] = placed.baked ? placed.positions[triangle[k]]
+                                : transformPoint(placed.world_from_object, placed.positions[triangle[k]]);
+    const vec2 du = uvs[triangle.y] - uvs[triangle.x], dv = uvs[triangle.z] - uvs[triangle.x];
+    const float determinant = du.x * dv.y - du.y * dv.x;
+    if (determinant == 0.0F) return normal;
+    const vec3 e1 = corners[1] - corners[0], e2 = corners[2] - corners[0];
+    tangent = (dv.y * e1 - du.y * e2) / determinant;
+    // glTF's V runs down the image while tangent space's Y runs up it: the bitangent is against V.
+    bitangent = -(du.x * e2 - dv.x * e1) / determinant;
+    tangent -= dot(tangent, normal) * normal;
+    bitangent -= dot(bitangent, normal) * normal;
+  }
+  if (dot(tangent, tangent) == 0.0F || dot(bitangent, bitangent) == 0.0F) return normal;
+  const vec2 uv = texcoordAt(point.instance, point.triangle, point.u, point.v, reference.texcoord);
+  const vec4 texel = sampleTexture(scene_.images[reference.image], reference, uv, false);
+  const vec2 slope = placed.material->normal_scale * (2.0F * vec2(texel) - 1.0F);
+  const vec3 perturbed = normalize(slope.x * normalize(tangent) + slope.y * normalize(bitangent) +
+                                   std::max(2.0F * texel.z - 1.0F, 1e-3F) * normal);
+  return dot(perturbed, point.normal_geometric) > 0.0F ? perturbed : normal;
+}
+
+vec2 TraceScene::texcoordAt(std::uint32_t instance, std::uint32_t triangle, float u, float v, int set) const {
+  const Placed& placed = placed_[instance];
+  const auto& uvs = placed.mesh->texcoords[set];
+  if (uvs.empty()) return vec2(0.0F);
+  const uvec3& t = placed.triangles[triangle];
+  return (1.0F - u - v) * uvs[t.x] + u * uvs[t.y] + v * uvs[t.z];
+}
+
+vec4 TraceScene::colorAt(std::uint32_t instance, std::uint32_t triangle, float u, float v) const {
+  const Placed& placed = placed_[instance];
+  const auto& colors = placed.mesh->colors;
+  if (colors.empty()) return vec4(1.0F);
+  const uvec3& t = placed.triangles[triangle];
+  return (1.0F - u - v) * colors[t.x] + u * colors[t.y] + v * colors[t.z];
+}
+
+void TraceScene::triangleCorners(std::uint32_t instance, std::uint32_t triangle, vec3 corners[3]) const {
+  const Placed& placed = placed_[instance];
+  const uvec3& t = placed.triangles[triangle];
+  for (int k = 0; k < 3; ++k)
+    corners[k] = placed.baked ? placed.positions[t[k]] : transformPoint(placed.world_from_object, placed.positions[t[k]]);
+  if (placed.mirrored) std::swap(corners[1], corners[2]);
+}
+
+}  // namespace nephroid

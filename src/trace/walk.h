@@ -1,0 +1,86 @@
+// One step of any path, from the eye or from a light: on to the next surface that is there, through the media between.
+#pragma once
+
+#include "core/math.h"
+#include "core/optics/absorption.shared.h"
+#include "core/optics/dispersion.shared.h"
+#include "core/sampling/sampler.h"
+#include "core/spectrum.h"
+#include "trace/interior.h"
+#include "trace/surface_material.h"
+#include "trace/trace_scene.h"
+
+namespace nephroid {
+
+/// How a path's wavelength is drawn when it first meets a dispersive interface.
+struct SpectralMode {
+  std::vector<Band> bands;  ///< empty: continuous
+};
+
+/// What a path is besides its ray.
+struct PathState {
+  Ray ray;
+  InteriorList interior;
+  float wavelength_nm = 0.0F;  ///< 0 until something dispersive was met
+};
+
+/// Index of a medium at the path's wavelength; vacuum for null.
+inline float iorOf(const Material* medium, float wavelength_nm) {
+  if (!medium) return 1.0F;
+  if (medium->dispersion == 0.0F || wavelength_nm == 0.0F) return medium->ior;
+  return dispersiveIor(medium->ior, medium->dispersion, wavelength_nm);
+}
+
+/// Where a step ended.
+struct Encounter {
+  bool hit = false;
+  bool overflow = false;      ///< nested deeper than the interior list
+  SurfacePoint point;
+  const SurfaceMaterial* material = nullptr;
+  SurfaceMaterial scratch;    ///< holds `*material` where it varies over the surface
+  Interface boundary;         ///< for solids
+  vec3 transmittance{1.0F};   ///< of the media on the way
+  float distance = 0.0F;      ///< m, along the ray; infinite for a miss
+  std::uint32_t rays = 0;     ///< traced on the way
+};
+
+/// Everything that a path needs to know of the world.
+class Walker {
+ public:
+  Walker(const TraceScene& scene, const MaterialTable& materials) : scene_(scene), materials_(materials) {}
+
+  /// Moves on to the next event: through holes and through interfaces that are hidden inside other solids.
+  /// On return `state.ray` starts where the last straight piece began.
+  void advance(PathState& state, Sampler& sampler, Encounter& e, bool coherent = false) const;
+
+  /// Transmittance along a straight line to a light or the camera: 0 if anything blocks, else panes and medium.
+  /// @param medium  in which the line runs; null: vacuum
+  vec3 visibility(const Ray& ray, const Material* medium, std::uint64_t& ray_count) const;
+
+  const TraceScene& scene() const { return scene_; }
+  const MaterialTable& materials() const { return materials_; }
+
+ private:
+  const TraceScene& scene_;
+  const MaterialTable& materials_;
+};
+
+/// Draws the path's wavelength if the interface is dispersive and it has none yet. @return the weight on its flux
+inline vec3 drawWavelength(PathState& state, const Interface& boundary, const SpectralMode& mode, Sampler& sampler) {
+  if (state.wavelength_nm != 0.0F) return vec3(1.0F);
+  const bool dispersive =
+      (boundary.from && boundary.from->dispersion > 0.0F) || (boundary.to && boundary.to->dispersion > 0.0F);
+  if (!dispersive) return vec3(1.0F);
+  const float u = sampler.next1D();
+  if (mode.bands.empty()) {
+    const Band band = sampleWavelength(u);
+    state.wavelength_nm = band.wavelength_nm;
+    return band.weight;
+  }
+  const auto count = static_cast<float>(mode.bands.size());
+  const Band& band = mode.bands[std::min(static_cast<std::size_t>(u * count), mode.bands.size() - 1)];
+  state.wavelength_nm = band.wavelength_nm;
+  return band.weight * count;
+}
+
+}  // namespace nephroid

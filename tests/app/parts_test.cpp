@@ -1,0 +1,129 @@
+// The functions behind the program that need no process.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "api/display.h"
+#include "app/cli/bench.h"
+#include "app/cli/help.h"
+#include "app/cli/options.h"
+#include "app/cli/picture.h"
+#include "app/cli/progress_bar.h"
+#include "app/cli/terminal.h"
+#include "nephroid/error.h"
+
+namespace nephroid::cli {
+namespace {
+
+using ::testing::ElementsAre;
+using ::testing::HasSubstr;
+using ::testing::Not;
+
+TEST(ParseCount, ReadsDigitsExponentsAndSuffixes) {
+  EXPECT_EQ(parseCount("--n", "64"), 64U);
+  EXPECT_EQ(parseCount("--n", "1e6"), 1'000'000U);
+  EXPECT_EQ(parseCount("--n", "500k"), 500'000U);
+  EXPECT_EQ(parseCount("--n", "2.5M"), 2'500'000U);
+  EXPECT_EQ(parseCount("--n", "0"), 0U);
+}
+
+TEST(ParseCount, RefusesWhatIsNoCount) {
+  for (const char* text : {"", "k", "-1", "1.5", "1e300", "nan", "inf", "12x", " 1", "0x10"})
+    EXPECT_THROW(parseCount("--n", text), UsageError) << text;
+}
+
+TEST(ParseSize, ReadsWidthAndHeight) {
+  EXPECT_EQ(parseSize("--size", "1024x768").width, 1024);
+  EXPECT_EQ(parseSize("--size", "1024x768").height, 768);
+  for (const char* text : {"", "x", "10", "10x", "x10", "10x10x", "0x1", "1x-1", "20000x1", "1.5x2"})
+    EXPECT_THROW(parseSize("--size", text), UsageError) << text;
+}
+
+TEST(Describe, HasOneFormAndLeavesOutWhatThereIsNot) {
+  EXPECT_EQ(describe({"Text.", "1", "0 to 2", "m"}), "Text. [default: 1; range: 0 to 2; unit: m]");
+  EXPECT_EQ(describe({"Text.", "1", "", ""}), "Text. [default: 1]");
+  EXPECT_EQ(describe({"Text.", "", "", ""}), "Text.");
+}
+
+TEST(WrapText, KeepsLinesWithinTheWidthAndLosesNoWord) {
+  EXPECT_EQ(wrapText("aa bb cc dd", 2, 7), "  aa bb\n  cc dd\n");
+  EXPECT_EQ(wrapText("a-word-longer-than-the-line b", 0, 5), "a-word-longer-than-the-line\nb\n");
+}
+
+TEST(FormatProgress, TellsFractionElapsedAndRest) {
+  const std::string line = formatProgress("frame 1/2", 0.25, "caustic", 10, 200);
+  EXPECT_THAT(line, HasSubstr("frame 1/2 [######                  ]  25 %"));
+  EXPECT_THAT(line, HasSubstr("elapsed 10 s, left 30 s"));
+  EXPECT_THAT(line, HasSubstr("caustic"));
+}
+
+TEST(FormatProgress, FitsTheTerminalAndGuessesNothingAtTheStart) {
+  EXPECT_LT(formatProgress("", 0.5, std::string(500, 'x'), 10, 80).size(), 80U);
+  EXPECT_THAT(formatProgress("", 0.0, "", 3, 80), Not(HasSubstr("left")));
+  EXPECT_THAT(formatProgress("", 0.5, "", 4000, 80), HasSubstr("1 h 06 min"));
+}
+
+TEST(PictureFiles, PutsBeautyOrTheFirstLayerUnderTheGivenName) {
+  EXPECT_THAT(pictureFiles("d/a.png", {"beauty", "caustic"}), ElementsAre("d/a.png", "d/a.caustic.png"));
+  EXPECT_THAT(pictureFiles("a.png", {"caustic", "beauty"}), ElementsAre("a.caustic.png", "a.png"));
+  EXPECT_THAT(pictureFiles("a.png", {"direct", "caustic"}), ElementsAre("a.png", "a.caustic.png"));
+  EXPECT_THAT(pictureFiles("a.EXR", {"beauty", "caustic"}), ElementsAre("a.EXR", "a.EXR"));
+  EXPECT_THROW(pictureFiles("a", {"beauty"}), UsageError);
+}
+
+TEST(ToOneLine, FoldsBlanksAndBreaks) { EXPECT_EQ(toOneLine(" a\n\n b\tc \n"), "a b c"); }
+
+TEST(Median, IsTheMiddleAndSpreadHalfTheRange) {
+  EXPECT_EQ(computeMedian({3, 1, 2}), 2);
+  EXPECT_EQ(computeMedian({4, 1, 2, 3}), 2.5);
+  EXPECT_EQ(computeMedian({}), 0);
+  EXPECT_DOUBLE_EQ(computeSpread({1, 2, 3}), 0.5);
+  EXPECT_EQ(computeSpread({5}), 0);
+}
+
+TEST(PeakMemory, SeesAnAllocationAndForgetsItWhenReset) {
+  resetPeakMemory();
+  const double before = readPeakMemory();
+  std::vector<char>(std::size_t{64} << 20, 1);
+  const double with = readPeakMemory();
+  EXPECT_GT(with, before + 50);
+  resetPeakMemory();
+  EXPECT_LE(readPeakMemory(), with);
+}
+
+LayeredImage makeLayer(const std::string& name, int channels, std::vector<float> pixels) {
+  const int width = static_cast<int>(pixels.size()) / channels;
+  LayeredImage image{.width = width, .height = 1};
+  Image layer(width, 1, channels);
+  layer.pixels = std::move(pixels);
+  image.layers.push_back({name, layer});
+  return image;
+}
+
+TEST(DisplayLayer, ShowsNormalsAroundGreyAndNearWhite) {
+  const Image normal = displayLayer(makeLayer("normal", 3, {0, 0, 1, -1, 0, 0}), "normal", {});
+  EXPECT_EQ(normal.rgb(0, 0), vec3(0.5F, 0.5F, 1.0F));
+  EXPECT_EQ(normal.rgb(1, 0), vec3(0.0F, 0.5F, 0.5F));
+  const Image depth = displayLayer(makeLayer("depth", 1, {2, 4, kInfinity, 0}), "depth", {});
+  EXPECT_FLOAT_EQ(depth.rgb(0, 0).x, 1.0F);
+  EXPECT_NEAR(depth.rgb(1, 0).x, 0.1F, 1e-6F);
+  EXPECT_EQ(depth.rgb(2, 0), vec3(0));
+  EXPECT_EQ(depth.rgb(3, 0), vec3(0));
+}
+
+TEST(DisplayLayer, ShowsIrradianceAsTheRadianceOfWhitePaper) {
+  const DisplayOptions plain{.exposure_ev = 0.0F};
+  const Image radiance = displayLayer(makeLayer("beauty", 3, {0.5F, 0.25F, 0.125F}), "beauty", plain);
+  const Image irradiance =
+      displayLayer(makeLayer("irradiance", 3, {0.5F * kPi, 0.25F * kPi, 0.125F * kPi}), "irradiance", plain);
+  for (int c = 0; c < 3; ++c) EXPECT_NEAR(irradiance.at(0, 0)[c], radiance.at(0, 0)[c], 1e-6F);
+}
+
+TEST(DisplayLayer, GivesNeighbouringIdsDistinctColours) {
+  const Image id = displayLayer(makeLayer("id", 1, {0, 1, 2, 3}), "id", {});
+  EXPECT_EQ(id.rgb(0, 0), vec3(0));
+  EXPECT_GT(length(id.rgb(1, 0) - id.rgb(2, 0)), 0.1F);
+  EXPECT_GT(length(id.rgb(2, 0) - id.rgb(3, 0)), 0.1F);
+}
+
+}  // namespace
+}  // namespace nephroid::cli

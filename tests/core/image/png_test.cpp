@@ -1,0 +1,166 @@
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <png.h>
+
+#include <cstring>
+#include <filesystem>
+#include <limits>
+
+#include "core/file.h"
+#include "core/image/image_files.h"
+
+namespace nephroid {
+namespace {
+
+using ::testing::HasSubstr;
+
+Image makeGradient(int width, int height) {
+  Image image(width, height, 3);
+  for (int y = 0; y < height; ++y)
+    for (int x = 0; x < width; ++x)
+      image.setRgb(x, y,
+                   vec3(static_cast<float>(x) / 255.0F, static_cast<float>(y) / 255.0F,
+                        static_cast<float>((x * 7 + y) % 256) / 255.0F));
+  return image;
+}
+
+std::vector<std::byte> encode(const Image& image) {
+  const TemporaryPath path(".png");
+  writePng(path.get(), image);
+  return readFile(path.get());
+}
+
+/// Any kind of PNG, through libpng's writer.
+std::vector<std::byte> encodeRaw(int width, int height, int bit_depth, int colour_type, std::vector<std::uint8_t> rows,
+                                 const png_color_16* transparent = nullptr, int interlace = PNG_INTERLACE_NONE) {
+  std::vector<std::byte> bytes;
+  png_structp png = png_create_write_struct(PNG_LIBPNG_VER_STRING, nullptr, nullptr, nullptr);
+  png_infop info = png_create_info_struct(png);
+  const auto append = [](png_structp writer, png_bytep data, std::size_t size) {
+    auto* target = static_cast<std::vector<std::byte>*>(png_get_io_ptr(writer));
+    const auto* begin = reinterpret_cast<const std::byte*>(data);
+    target->insert(target->end(), begin, begin + size);
+  };
+  png_set_write_fn(png, &bytes, append, [](png_structp) {});
+  png_set_IHDR(png, info, static_cast<png_uint_32>(width), static_cast<png_uint_32>(height), bit_depth, colour_type,
+               interlace, PNG_COMPRESSION_TYPE_DEFAULT, PNG_FILTER_TYPE_DEFAULT);
+  if (transparent != nullptr) png_set_tRNS(png, info, nullptr, 0, transparent);
+  png_write_info(png, info);
+  const std::size_t row_bytes = png_get_rowbytes(png, info);
+  std::vector<png_bytep> pointers;
+  for (int y = 0; y < height; ++y) pointers.push_back(rows.data() + static_cast<std::size_t>(y) * row_bytes);
+  png_write_image(png, pointers.data());
+  png_write_end(png, info);
+  png_destroy_write_struct(&png, &info);
+  return bytes;
+}
+
+std::vector<std::uint8_t> decodePixels(std::span<const std::byte> bytes) {
+  return std::get<ByteImage>(decodeImage(bytes, "the image")).pixels;
+}
+
+TEST(Png, RoundTripKeepsEveryByte) {
+  const Image image = makeGradient(256, 200);
+  const ByteImage back = std::get<ByteImage>(decodeImage(encode(image), "x"));
+  ASSERT_EQ(back.width, 256);
+  ASSERT_EQ(back.height, 200);
+  for (int y = 0; y < 200; ++y)
+    for (int x = 0; x < 256; ++x) {
+      const std::uint8_t* p = back.pixels.data() + (static_cast<std::size_t>(y) * 256 + x) * 4;
+      ASSERT_EQ(p[0], x);
+      ASSERT_EQ(p[1], y);
+      ASSERT_EQ(p[2], (x * 7 + y) % 256);
+      ASSERT_EQ(p[3], 255);
+    }
+}
+
+TEST(Png, WriterRoundsAndClamps) {
+  Image image(2, 1, 3);
+  image.setRgb(0, 0, {-1.0F, 2.0F, std::numeric_limits<float>::quiet_NaN()});
+  image.setRgb(1, 0, {0.5F, 0.4999F / 255.0F, 0.5001F / 255.0F});
+  EXPECT_EQ(decodePixels(encode(image)), (std::vector<std::uint8_t>{0, 255, 0, 255, 128, 0, 1, 255}));
+}
+
+TEST(Png, WriterSpreadsOneChannel) {
+  EXPECT_EQ(decodePixels(encode(Image(1, 1, 1, 1.0F))), (std::vector<std::uint8_t>{255, 255, 255, 255}));
+}
+
+TEST(Png, WriterStoresMetadataAsText) {
+  const TemporaryPath path(".png");
+  writePng(path.get(), Image(2, 2, 3, 0.5F), {{"technique", "reference"}, {"scene", "Brücke"}});
+  const std::vector<std::byte> bytes = readFile(path.get());
+  const std::string text(reinterpret_cast<const char*>(bytes.data()), bytes.size());
+  using namespace std::string_literals;
+  EXPECT_THAT(text, HasSubstr("tEXttechnique\0reference"s));
+  EXPECT_THAT(text, HasSubstr("iTXtscene\0\0\0\0\0Brücke"s));
+  EXPECT_THAT(text, HasSubstr("sRGB"));
+}
+
+TEST(Png, WriterNamesAFullDisk) {
+  try {
+    writePng("/dev/full", Image(64, 64, 3, 0.5F));
+    FAIL();
+  } catch (const ResourceError& error) {
+    EXPECT_THAT(error.what(), HasSubstr("/dev/full: cannot write: No space left on device"));
+  }
+}
+
+TEST(Png, SixteenBitsAreScaledNotCut) {
+  // 0x8080 is 128.5/255 of 65535 = 128 exactly; 0x00ff is nearest to 1, where cutting would give 0.
+  const auto bytes = encodeRaw(2, 1, 16, PNG_COLOR_TYPE_GRAY, {0x80, 0x80, 0x00, 0xff});
+  EXPECT_EQ(decodePixels(bytes), (std::vector<std::uint8_t>{128, 128, 128, 255, 1, 1, 1, 255}));
+}
+
+TEST(Png, TransparentColourBecomesAlpha) {
+  const png_color_16 transparent{.index = 0, .red = 1, .green = 2, .blue = 3, .gray = 0};
+  const auto bytes = encodeRaw(2, 1, 8, PNG_COLOR_TYPE_RGB, {1, 2, 3, 4, 5, 6}, &transparent);
+  EXPECT_EQ(decodePixels(bytes), (std::vector<std::uint8_t>{1, 2, 3, 0, 4, 5, 6, 255}));
+}
+
+TEST(Png, InterlacedGreyWithAlphaIsRead) {
+  std::vector<std::uint8_t> rows, expected;
+  for (std::uint8_t i = 0; i < 9 * 9; ++i) {
+    rows.insert(rows.end(), {i, static_cast<std::uint8_t>(255 - i)});
+    expected.insert(expected.end(), {i, i, i, static_cast<std::uint8_t>(255 - i)});
+  }
+  const auto bytes = encodeRaw(9, 9, 8, PNG_COLOR_TYPE_GRAY_ALPHA, rows, nullptr, PNG_INTERLACE_ADAM7);
+  EXPECT_EQ(decodePixels(bytes), expected);
+}
+
+TEST(Png, EveryTruncationIsRefused) {
+  const std::vector<std::byte> bytes = encode(makeGradient(16, 16));
+  for (std::size_t size = 8; size < bytes.size(); ++size)
+    EXPECT_THAT(getRefusal(std::span(bytes).first(size)), HasSubstr("damaged PNG image")) << size;
+}
+
+TEST(Png, EveryFlippedByteOfThePixelsIsRefused) {
+  const std::vector<std::byte> bytes = encode(makeGradient(16, 16));
+  const std::string text(reinterpret_cast<const char*>(bytes.data()), bytes.size());
+  const std::size_t data = text.find("IDAT") + 4;
+  const std::size_t end = text.find("IEND") - 4;
+  for (std::size_t i = data; i < end; ++i) {
+    std::vector<std::byte> broken = bytes;
+    broken[i] ^= std::byte{0x10};
+    EXPECT_THAT(getRefusal(broken), HasSubstr("damaged PNG image")) << i;
+  }
+}
+
+TEST(Png, HugeSizeInASmallFileIsRefusedAtOnce) {
+  std::vector<std::byte> bytes = encode(makeGradient(4, 4));
+  // 16384 x 16384 is allowed, but not from a hundred bytes. (The check sum of the header follows its 13 bytes.)
+  bytes[16 + 2] = std::byte{0x40}, bytes[16 + 3] = std::byte{0};
+  bytes[20 + 2] = std::byte{0x40}, bytes[20 + 3] = std::byte{0};
+  std::vector<std::uint8_t> header(17);
+  std::memcpy(header.data(), bytes.data() + 12, header.size());
+  std::uint32_t crc = ~0U;  // CRC-32 of the PNG specification, annex D, bit by bit
+  for (const std::uint8_t byte : header) {
+    crc ^= byte;
+    for (int i = 0; i < 8; ++i) crc = (crc & 1U) != 0U ? 0xedb88320U ^ (crc >> 1U) : crc >> 1U;
+  }
+  crc = ~crc;
+  for (unsigned i = 0; i < 4; ++i) bytes[29 + i] = static_cast<std::byte>(crc >> (24U - 8U * i));
+  EXPECT_THAT(getRefusal(bytes), HasSubstr("the file ends too early for its width and height"));
+}
+
+}  // namespace
+}  // namespace nephroid

@@ -1,0 +1,239 @@
+// The reference against itself: two estimators that share little, layers that add up, a ledger that closes.
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "nephroid/error.h"
+#include "support/tiny_scenes.h"
+#include "techniques/layers.h"
+
+namespace nephroid {
+namespace {
+
+using test::addObject;
+using test::makeDiffuse;
+using test::makeGlass;
+using test::makeMetal;
+using test::makeSettings;
+using test::renderReference;
+
+constexpr int kScramblings = 16;
+/// Two-sided significance of all cells of a z-test together; fixed seeds, so a failure is a change of the code.
+constexpr double kSignificance = 0.01;
+
+Camera lookFromAbove() { return makeCamera("above", vec3(3.5F, 5.0F, 3.0F), vec3(0.3F, 0, 0.3F), radians(50)); }
+
+Material makeLamp(vec3 radiance) {
+  Material lamp;
+  lamp.name = "lamp";
+  lamp.base_color = vec4(0, 0, 0, 1);
+  lamp.emission = radiance;
+  return lamp;
+}
+
+/// A large lamp, so that both directions of transport converge.
+SceneData makeLampScene(Material material) {
+  SceneData scene = test::makeBallScene(std::move(material), 256);
+  addObject(scene, makeRectangle("lamp", dvec3(-1, 4, -1), dvec3(1, 0, 0), dvec3(0, 0, 1)), makeLamp(vec3(5.0F, 4.0F, 3.0F)));
+  return scene;
+}
+
+/// Means over 8 × 8 blocks of a layer for each scrambling: [block][scrambling].
+std::vector<std::vector<double>> blockMeans(const SceneData& scene, RenderSettings settings, const std::string& layer) {
+  std::vector<std::vector<double>> means(64);
+  for (int s = 0; s < kScramblings; ++s) {
+    settings.seed = static_cast<std::uint64_t>(1000 + s);
+    const RenderResult result = renderReference(scene, lookFromAbove(), settings);
+    const Image& image = *result.image.find(layer);
+    const int block = image.width / 8;
+    for (int b = 0; b < 64; ++b) {
+      double sum = 0.0;
+      for (int y = 0; y < block; ++y)
+        for (int x = 0; x < block; ++x) sum += luminance(image.rgb((b % 8) * block + x, (b / 8) * block + y));
+      means[b].push_back(sum / (block * block));
+    }
+  }
+  return means;
+}
+
+struct Moments {
+  double mean = 0, variance_of_mean = 0;
+};
+Moments momentsOf(const std::vector<double>& values) {
+  Moments m;
+  for (const double v : values) m.mean += v / static_cast<double>(values.size());
+  for (const double v : values)
+    m.variance_of_mean += (v - m.mean) * (v - m.mean) / (static_cast<double>(values.size()) * static_cast<double>(values.size() - 1));
+  return m;
+}
+
+/// Student's t for 15 to 30 degrees of freedom is wider than the normal: the bound is that of t with 30 at Šidák's level.
+void expectAgreement(const std::vector<std::vector<double>>& a, const std::vector<std::vector<double>>& b) {
+  // 64 blocks: each at 1 − (1 − 0.01)^(1/64) = 1.57e-4; t_30 there is 4.3.
+  constexpr double kBound = 4.3;
+  static_assert(kSignificance == 0.01);
+  double total_a = 0, total_b = 0, total_variance = 0;
+  for (std::size_t i = 0; i < a.size(); ++i) {
+    const Moments ma = momentsOf(a[i]), mb = momentsOf(b[i]);
+    const double error = std::sqrt(ma.variance_of_mean + mb.variance_of_mean);
+    total_a += ma.mean, total_b += mb.mean, total_variance += error * error;
+    if (error == 0.0) {
+      EXPECT_EQ(ma.mean, mb.mean) << "block " << i;
+      continue;
+    }
+    EXPECT_LT(std::abs(ma.mean - mb.mean) / error, kBound) << "block " << i << ": " << ma.mean << " and " << mb.mean;
+  }
+  EXPECT_GT(total_a, 0.0);
+  EXPECT_LT(std::abs(total_a - total_b) / std::sqrt(total_variance), 3.0) << total_a << " and " << total_b;
+  // The test must have power: a hundredth of the whole would show.
+  EXPECT_LT(std::sqrt(total_variance) / total_a, 0.01);
+}
+
+class Estimators : public testing::TestWithParam<const char*> {
+ protected:
+  static Material material() {
+    const std::string kind = GetParam();
+    if (kind == "glass") return makeGlass(1.5F);
+    if (kind == "rough_glass") return makeGlass(1.5F, 0.3F);
+    if (kind == "metal") return makeMetal(vec3(0.9F, 0.7F, 0.4F));
+    if (kind == "rough_metal") return makeMetal(vec3(0.9F, 0.7F, 0.4F), 0.4F);
+    if (kind == "coloured_glass") {
+      Material m = makeGlass(1.33F);
+      m.attenuation_color = vec3(0.2F, 0.7F, 0.9F);
+      m.attenuation_distance = 0.5F;
+      return m;
+    }
+    if (kind == "dispersive_glass") {
+      Material m = makeGlass(1.5F);
+      m.dispersion = 2.0F;
+      return m;
+    }
+    Material varnish = makeDiffuse(vec3(0.7F, 0.2F, 0.1F));
+    varnish.roughness = 0.2F;
+    return varnish;
+  }
+};
+
+TEST_P(Estimators, LightTracingAndPathTracingAgree) {
+  const SceneData scene = makeLampScene(material());
+  RenderSettings from_lights = makeSettings(32, 1, 1 << 16, {"caustic", "irradiance_caustic"});
+  RenderSettings from_eye = makeSettings(32, 192, 0, {"caustic", "irradiance_caustic"});
+  from_eye.params.set("caustic-estimator", "path");
+  for (const char* layer : {"caustic", "irradiance_caustic"})
+    expectAgreement(blockMeans(scene, from_lights, layer), blockMeans(scene, from_eye, layer));
+}
+
+INSTANTIATE_TEST_SUITE_P(Materials, Estimators,
+                         testing::Values("glass", "rough_glass", "metal", "rough_metal", "coloured_glass",
+                                         "dispersive_glass", "varnish"),
+                         [](const auto& tested) { return std::string(tested.param); });
+
+TEST(Reference, IndirectLightAgreesBetweenEstimators) {
+  const SceneData scene = makeLampScene(makeMetal(vec3(0.9F)));
+  SceneData with_wall = scene;
+  addObject(with_wall, makeRectangle("wall", dvec3(-3, 2, 0), dvec3(0, 2, 0), dvec3(0, 0, 3)), makeDiffuse(vec3(0.8F)));
+  RenderSettings from_lights = makeSettings(32, 64, 1 << 16, {"indirect"});
+  RenderSettings from_eye = makeSettings(32, 160, 0, {"indirect"});
+  from_eye.params.set("caustic-estimator", "path");
+  expectAgreement(blockMeans(with_wall, from_lights, "indirect"), blockMeans(with_wall, from_eye, "indirect"));
+}
+
+TEST(Reference, SunWithASizeAgreesBetweenEstimators) {
+  SceneData scene = test::makeBallScene(makeMetal(vec3(0.9F)), 256);
+  scene.lights.push_back(test::makeSun(vec3(-0.4F, -1, -0.2F), vec3(3.0F), 60.0F));
+  RenderSettings from_eye = makeSettings(32, 256, 0, {"caustic"});
+  from_eye.params.set("caustic-estimator", "path");
+  expectAgreement(blockMeans(scene, makeSettings(32, 1, 1 << 16, {"caustic"}), "caustic"), blockMeans(scene, from_eye, "caustic"));
+}
+
+TEST(Reference, EnvironmentAgreesBetweenEstimators) {
+  SceneData scene = test::makeBallScene(makeGlass(1.5F), 256);
+  auto image = std::make_shared<Image>(16, 8, 3, 0.5F);
+  for (int x = 2; x < 7; ++x) image->setRgb(x, 2, vec3(20.0F, 10.0F, 5.0F));
+  scene.environment = Environment{image, 20.0F, 1.0F, "test"};
+  RenderSettings from_eye = makeSettings(32, 256, 0, {"caustic"});
+  from_eye.params.set("caustic-estimator", "path");
+  expectAgreement(blockMeans(scene, makeSettings(32, 1, 1 << 17, {"caustic"}), "caustic"), blockMeans(scene, from_eye, "caustic"));
+}
+
+TEST(Reference, LayersSumToBeauty) {
+  const SceneData scene = makeLampScene(makeGlass(1.5F));
+  const RenderResult result =
+      renderReference(scene, lookFromAbove(), makeSettings(48, 16, 100000, parseLayerList("beauty,direct,caustic,specular,indirect,emission")));
+  const Image& beauty = *result.image.find("beauty");
+  ASSERT_GT(test::meanOf(beauty).x, 0.0);
+  for (const char* name : {"direct", "caustic", "specular", "indirect"}) EXPECT_GT(test::meanOf(*result.image.find(name)).x, 0.0) << name;
+  for (std::size_t i = 0; i < beauty.pixels.size(); ++i) {
+    float sum = 0.0F;
+    for (const LayerInfo& info : layerInfos())
+      if (info.summed) sum += result.image.find(info.name)->pixels[i];
+    ASSERT_NEAR(beauty.pixels[i], sum, 1e-5F * std::abs(sum) + 1e-7F);
+  }
+}
+
+TEST(Reference, LedgerClosesForEveryKindOfMaterialAndLight) {
+  Material absorbing = makeGlass(1.5F);
+  absorbing.attenuation_color = vec3(0.1F, 0.5F, 0.9F);
+  absorbing.attenuation_distance = 1.0F;
+  absorbing.dispersion = 1.0F;
+  Material varnish = makeDiffuse(vec3(0.5F));
+  varnish.roughness = 0.3F;
+  for (const Material& material : {absorbing, varnish, makeMetal(vec3(0.9F, 0.6F, 0.3F)), makeGlass(1.5F, 0.4F)}) {
+    SceneData scene = makeLampScene(material);
+    scene.lights.push_back(test::makeSun(vec3(-0.4F, -1, -0.2F), vec3(3.0F), 0.5F));
+    scene.lights.push_back(test::makePoint(vec3(2, 4, 1), vec3(9.0F, 5.0F, 1.0F)));
+    const RenderResult result = renderReference(scene, lookFromAbove(), makeSettings(16, 1, 50000, {"caustic", "indirect"}));
+    ASSERT_EQ(result.ledgers.size(), 3U);
+    for (const Ledger& ledger : result.ledgers) {
+      EXPECT_LE(ledger.residual(), 1e-5) << material.name << ' ' << ledger.light;
+      const dvec3 roulette = ledger.roulette, error = ledger.rouletteStandardError();
+      for (int c = 0; c < 3; ++c) EXPECT_LE(std::abs(roulette[c]), 4.5 * error[c] + 1e-6 * ledger.emitted[c]) << material.name;
+    }
+  }
+}
+
+TEST(Reference, GeometryLayersSayWhatIsSeen) {
+  const SceneData scene = test::makeBallScene(makeGlass(1.5F));
+  const Camera down = makeCamera("down", vec3(0, 5, 0), vec3(0, 0, 0), radians(60));
+  const RenderResult result = renderReference(scene, down, makeSettings(33, 1, 1, parseLayerList("albedo,normal,position,depth,id")));
+  EXPECT_EQ(result.image.find("id")->at(16, 16)[0], 2.0F);
+  EXPECT_EQ(result.image.find("id")->at(1, 1)[0], 1.0F);
+  EXPECT_NEAR(result.image.find("depth")->at(16, 16)[0], 2.8F, 1e-3F);
+  EXPECT_NEAR(result.image.find("depth")->at(1, 1)[0], 5.0F, 1e-3F);
+  EXPECT_NEAR(result.image.find("normal")->rgb(16, 16).y, 1.0F, 1e-3F);
+  EXPECT_NEAR(result.image.find("albedo")->rgb(1, 1).x, 0.6F, 1e-6F);
+  EXPECT_NEAR(result.image.find("position")->rgb(1, 1).y, 0.0F, 1e-6F);
+}
+
+TEST(Reference, StopBeforeAnythingIsDoneIsInterruptedError) {
+  const SceneData scene = makeLampScene(makeGlass(1.5F));
+  StopToken stop;
+  stop.request();
+  EXPECT_THROW(findTechnique("reference").render(scene, lookFromAbove(), makeSettings(16, 4, 1000, {"beauty"}), nullptr, &stop),
+               InterruptedError);
+}
+
+TEST(Reference, StopKeepsWhatWasReached) {
+  struct StopAfterFirst final : ProgressSink {
+    void update(double, const std::string&) override { stop.request(); }
+    StopToken stop;
+  } sink;
+  const SceneData scene = makeLampScene(makeGlass(1.5F));
+  const RenderResult result =
+      findTechnique("reference").render(scene, lookFromAbove(), makeSettings(16, 1000000, 1000, {"beauty"}), &sink, &sink.stop);
+  EXPECT_TRUE(result.interrupted);
+  EXPECT_EQ(result.stats.samples, 1U);
+  EXPECT_GT(test::meanOf(result.image.layers[0].image).x, 0.0);
+}
+
+TEST(Reference, TimeEndsAProgressiveRender) {
+  const SceneData scene = makeLampScene(makeGlass(1.5F));
+  RenderSettings settings = makeSettings(16, 0, 0, {"beauty"});
+  settings.seconds = 0.05;
+  const RenderResult result = renderReference(scene, lookFromAbove(), settings);
+  EXPECT_GT(result.stats.samples, 0U);
+  EXPECT_GT(result.stats.photons, 0U);
+}
+
+}  // namespace
+}  // namespace nephroid

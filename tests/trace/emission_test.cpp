@@ -1,0 +1,143 @@
+#include "trace/emission.h"
+
+#include <gtest/gtest.h>
+
+#include "core/sampling/warp.h"
+#include "support/tiny_scenes.h"
+
+namespace nephroid {
+namespace {
+
+using test::addObject;
+using test::makeDiffuse;
+using test::makeGlass;
+
+/// A light source and a ball to aim at, nothing else.
+struct Aim {
+  explicit Aim(SceneData d) : data(std::move(d)), scene(data), materials(scene), lights(scene, materials),
+                              targets(scene, targetFlags()), emitters(makeEmitters(scene, materials, lights, targets)) {}
+  std::vector<bool> targetFlags() const {
+    std::vector<bool> flags;
+    for (const Instance& instance : data.instances) flags.push_back(data.materialOf(instance).transmits());
+    return flags;
+  }
+  /// Flux that reaches the ball, and its share of what was emitted.
+  struct Result {
+    double hit = 0, emitted = 0;
+  };
+  Result shoot(std::uint32_t count) const {
+    Result result;
+    for (std::uint32_t i = 0; i < count; ++i) {
+      Sampler sampler(1, 1, i);
+      const EmittedPhoton photon = emitters.at(0)->emit(sampler);
+      EXPECT_NEAR(length(photon.dir), 1.0F, 1e-5F);
+      result.emitted += static_cast<double>(photon.flux.x) / count;
+      RayHit hit;
+      if (photon.flux.x > 0.0F && scene.intersect(Ray{photon.origin, photon.dir}, hit) &&
+          scene.materialOf(hit.instance).transmits())
+        result.hit += static_cast<double>(photon.flux.x) / count;
+    }
+    return result;
+  }
+  SceneData data;
+  TraceScene scene;
+  MaterialTable materials;
+  LightSet lights;
+  EmissionTargets targets;
+  std::vector<std::unique_ptr<Emitter>> emitters;
+};
+
+SceneData makeBall(double radius = 0.5) {
+  SceneData data;
+  addObject(data, makeSphere("ball", dvec3(1, 2, 3), radius, 256), makeGlass(1.5F));
+  return data;
+}
+
+TEST(SunEmission, BringsTheBallItsCrossSection) {
+  for (const float angle : {0.0F, 0.5F, 10.0F}) {
+    SceneData data = makeBall();
+    data.lights.push_back(test::makeSun(vec3(1, -2, 0.3F), vec3(10.0F), angle));
+    const Aim aim(std::move(data));
+    const auto result = aim.shoot(1 << 16);
+    // E⊥·πr²: 0.02 % less for the facets of the ball; a wide sun sees the same sphere from every side.
+    EXPECT_NEAR(result.hit, 10.0 * kPi * 0.25, 0.01 * 10.0 * kPi * 0.25) << angle;
+    if (angle < 1.0F) {
+      EXPECT_GT(result.hit / result.emitted, 0.97) << angle;
+    }
+  }
+}
+
+TEST(PointEmission, BringsTheBallItsSolidAngle) {
+  for (const float radius : {0.0F, 0.3F}) {
+    SceneData data = makeBall();
+    data.lights.push_back(test::makePoint(vec3(1, 2, 6), vec3(5.0F), radius));
+    const Aim aim(std::move(data));
+    const auto result = aim.shoot(1 << 16);
+    // Sphere to sphere: I times the solid angle of the ball from the centre, in the far field; the exchange of a
+    // spherical light differs by less than (r/d)² = 1 %.
+    const double solid_angle = 2.0 * kPi * (1.0 - std::sqrt(1.0 - 0.25 / 9.0));
+    EXPECT_NEAR(result.hit, 5.0 * solid_angle, (radius > 0 ? 0.015 : 0.003) * 5.0 * solid_angle) << radius;
+    if (radius == 0.0F) {
+      EXPECT_GT(result.hit / result.emitted, 0.95);
+    }
+  }
+}
+
+TEST(PointEmission, FromInsideTheTargetsMissesNothing) {
+  SceneData data;
+  addObject(data, makeSphere("shell", dvec3(0), 2.0, 64), makeGlass(1.5F));
+  data.lights.push_back(test::makePoint(vec3(0.1F, 0.2F, 0), vec3(1.0F)));
+  const Aim aim(std::move(data));
+  const auto result = aim.shoot(1 << 14);
+  EXPECT_NEAR(result.hit, 4.0 * kPi, 1e-3 * 4.0 * kPi);
+}
+
+TEST(SpotEmission, StaysInsideItsCone) {
+  SceneData data = makeBall(1.0);
+  Light spot = test::makePoint(vec3(1, 2, 6), vec3(5.0F));
+  spot.kind = LightKind::kSpot;
+  spot.direction = vec3(0, 0, -1);
+  spot.inner_cone = spot.outer_cone = 0.1F;
+  data.lights.push_back(spot);
+  const Aim aim(std::move(data));
+  const auto result = aim.shoot(1 << 15);
+  // The cone is narrower than the ball: all of it arrives.
+  const double flux = 5.0 * 2.0 * kPi * (1.0 - std::cos(0.1));
+  EXPECT_NEAR(result.hit, flux, 0.01 * flux);
+}
+
+TEST(MeshEmission, EqualsTheFormFactorOfASmallLight) {
+  SceneData data = makeBall();
+  Material lamp;
+  lamp.name = "lamp";
+  lamp.emission = vec3(7.0F);
+  // A square of 2 cm, 3 m above the ball, facing down: flux L·A·sin²(half-angle), with cos ≈ its mean over the cone.
+  addObject(data, makeRectangle("lamp", dvec3(1, 5, 3), dvec3(0.01, 0, 0), dvec3(0, 0, 0.01)), lamp);
+  const Aim aim(std::move(data));
+  const auto result = aim.shoot(1 << 15);
+  const double expected = 7.0 * 4e-4 * kPi * 0.25 / 9.0;
+  EXPECT_NEAR(result.hit, expected, 0.005 * expected);
+}
+
+TEST(EnvironmentEmission, BringsTheBallPiTimesRadianceOnItsWholeSurface) {
+  SceneData data = makeBall();
+  Environment environment;
+  environment.radiance = std::make_shared<Image>(32, 16, 3, 2.0F);
+  data.environment = environment;
+  const Aim aim(std::move(data));
+  const auto result = aim.shoot(1 << 16);
+  // E = πL on every point of a convex body: flux = πL·4πr².
+  const double expected = kPi * 2.0 * 4.0 * kPi * 0.25;
+  EXPECT_NEAR(result.hit, expected, 0.01 * expected);
+}
+
+TEST(MakeEmitters, NothingToAimAtMeansNoEmitter) {
+  SceneData data;
+  addObject(data, test::makeFloor(4.0), makeDiffuse(vec3(0.5F)));
+  data.lights.push_back(test::makeSun(vec3(0, -1, 0), vec3(1.0F)));
+  const Aim aim(std::move(data));
+  EXPECT_TRUE(aim.emitters.empty());
+}
+
+}  // namespace
+}  // namespace nephroid
