@@ -68,10 +68,10 @@ std::optional<vec3> parseHexColour(const ParamSpec& spec, std::string_view text)
   if (text.size() != 7) return std::nullopt;
   vec3 colour(0.0F);
   for (int c = 0; c < 3; ++c) {
-    const char* first = text.data() + 1 + 2 * c;
+    const std::string_view digits = text.substr(1 + 2 * static_cast<std::size_t>(c), 2);
     int byte = 0;
-    const auto [end, error] = std::from_chars(first, first + 2, byte, 16);
-    if (error != std::errc() || end != first + 2 || byte < 0) return std::nullopt;
+    const auto [end, error] = std::from_chars(digits.data(), digits.data() + digits.size(), byte, 16);
+    if (error != std::errc() || end != digits.data() + digits.size() || byte < 0) return std::nullopt;
     colour[c] = linearFromSrgb(static_cast<float>(byte) / 255.0F);
     if (!isInRange(spec, colour[c])) return std::nullopt;
   }

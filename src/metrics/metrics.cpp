@@ -142,7 +142,7 @@ double computeP99(const Image& image, const Image& reference, Mask mask) {
 }  // namespace
 
 std::span<const Metric> metrics() {
-  static const std::array kMetrics{
+  static const std::array entries{
       Metric{"rmse", "sqrt(mean (I-R)^2): root of the mean squared error, in the layer's unit", computeRmse},
       Metric{"nrmse", "rmse / mean R: the same as a fraction of the mean reference", computeNrmse},
       Metric{"relmse", "mean((I-R)^2 / (R^2 + (0.01 mean R)^2)): mean squared error relative to each pixel",
@@ -153,7 +153,7 @@ std::span<const Metric> metrics() {
       Metric{"p99", "99th percentile (nearest rank) of |I-R| / (|R| + 0.01 mean R): how bad the worst places are",
              computeP99},
   };
-  return kMetrics;
+  return entries;
 }
 
 const Metric& findMetric(std::string_view name) {

@@ -13,6 +13,8 @@ namespace {
 /// Cells along each side of an emission mask. The mask's border wastes photons on a band one cell wide: about 1 % at
 /// 512 for a compact target. A power of two, for the quadtree.
 constexpr int kMaskSize = 512;
+/// Cells by which a sun's own width may blur a shadow before triangles are no longer marked one by one.
+constexpr float kCoarseMargin = 8.0F;
 /// Photons of the pilot that estimates the flux of area lights and environments.
 constexpr int kPilotCount = 4096;
 
@@ -61,16 +63,24 @@ class SunEmitter final : public Emitter {
     const float size = std::max({upper.x - lower.x, upper.y - lower.y, 1e-6F * targets.bounds().radius()});
     extent_ = glm::max((upper - lower) * 1.0001F, vec2(1e-4F * size));
     lower_ = 0.5F * (lower + upper) - 0.5F * extent_;
-    targets.visitTriangles([&](const vec3* p) {
-      vec2 corners[3];
-      float margin = 0.0F;
-      for (int k = 0; k < 3; ++k) {
-        const vec3 local = frame_.toLocal(p[k] - origin_);
-        corners[k] = vec2(local);
-        margin = std::max(margin, widen(local));
+    // A wide sun blurs every shadow over many cells: then clusters say as much as triangles, and are few.
+    if (targets.bounds().radius() * tan_half_angle > kCoarseMargin * (extent_.x + extent_.y) / kMaskSize) {
+      for (const EmissionTargets::Sphere& cluster : targets.clusters()) {
+        const vec3 local = frame_.toLocal(cluster.centre - origin_);
+        markDisc(vec2(local), cluster.radius + (std::abs(local.z) + cluster.radius) * tan_half_angle);
       }
-      markTriangle(corners, margin);
-    });
+    } else {
+      targets.visitTriangles([&](const vec3* p) {
+        vec2 corners[3];
+        float margin = 0.0F;
+        for (int k = 0; k < 3; ++k) {
+          const vec3 local = frame_.toLocal(p[k] - origin_);
+          corners[k] = vec2(local);
+          margin = std::max(margin, widen(local));
+        }
+        markTriangle(corners, margin);
+      });
+    }
     mask_.finish();
     area_ = mask_.markedFraction() * extent_.x * extent_.y;
     expected_flux_ = light.intensity * static_cast<float>(area_);
@@ -95,27 +105,38 @@ class SunEmitter final : public Emitter {
   }
 
  private:
-  void markTriangle(const vec2* corners, float margin) {
+  /// Marks the cells of the box [low, high] of the plane whose centres pass `inside`.
+  template <class Inside>
+  void markBox(vec2 low, vec2 high, Inside&& inside) {
     const vec2 cell = extent_ / static_cast<float>(kMaskSize);
-    const float reach = margin + 0.5F * length(cell);
-    const vec2 low = (glm::min(corners[0], glm::min(corners[1], corners[2])) - reach - lower_) / cell;
-    const vec2 high = (glm::max(corners[0], glm::max(corners[1], corners[2])) + reach - lower_) / cell;
     const auto clampCell = [](float x) { return std::clamp(static_cast<int>(std::floor(x)), 0, kMaskSize - 1); };
+    const vec2 first = (low - lower_) / cell, last = (high - lower_) / cell;
+    for (int y = clampCell(first.y); y <= clampCell(last.y); ++y)
+      for (int x = clampCell(first.x); x <= clampCell(last.x); ++x)
+        if (!mask_.isMarked(x, y) &&
+            inside(lower_ + cell * vec2(static_cast<float>(x) + 0.5F, static_cast<float>(y) + 0.5F)))
+          mask_.mark(x, y);
+  }
+  float cellReach() const { return 0.5F * length(extent_) / static_cast<float>(kMaskSize); }
+
+  void markDisc(vec2 centre, float radius) {
+    const float reach = radius + cellReach();
+    markBox(centre - reach, centre + reach,
+            [&](vec2 p) { return dot(p - centre, p - centre) <= reach * reach; });
+  }
+  void markTriangle(const vec2* corners, float margin) {
+    const float reach = margin + cellReach();
     const vec2 e0 = corners[1] - corners[0], e1 = corners[2] - corners[0];
     const float orientation = e0.x * e1.y - e0.y * e1.x < 0.0F ? -1.0F : 1.0F;
-    for (int y = clampCell(low.y); y <= clampCell(high.y); ++y) {
-      for (int x = clampCell(low.x); x <= clampCell(high.x); ++x) {
-        if (mask_.isMarked(x, y)) continue;
-        const vec2 centre = lower_ + cell * vec2(static_cast<float>(x) + 0.5F, static_cast<float>(y) + 0.5F);
-        bool inside = true;
-        for (int k = 0; k < 3 && inside; ++k) {
-          const vec2 a = corners[k], edge = corners[(k + 1) % 3] - a;
-          const float side = orientation * (edge.x * (centre.y - a.y) - edge.y * (centre.x - a.x));
-          inside = side >= -reach * length(edge);
-        }
-        if (inside) mask_.mark(x, y);
-      }
-    }
+    markBox(glm::min(corners[0], glm::min(corners[1], corners[2])) - reach,
+            glm::max(corners[0], glm::max(corners[1], corners[2])) + reach, [&](vec2 p) {
+              for (int k = 0; k < 3; ++k) {
+                const vec2 a = corners[k], edge = corners[(k + 1) % 3] - a;
+                const float side = orientation * (edge.x * (p.y - a.y) - edge.y * (p.x - a.x));
+                if (side < -reach * length(edge)) return false;
+              }
+              return true;
+            });
   }
   /// Distance along `dir` until the scene's box is behind: far enough that nothing could block before the start, and no
   /// farther, because single precision counts from the origin of a ray.

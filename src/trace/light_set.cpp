@@ -46,7 +46,7 @@ vec3 intensityAlong(const Light& light, vec3 dir) {
   if (light.kind != LightKind::kSpot) return light.intensity;
   // glTF's KHR_lights_punctual: the squared linear ramp between the cosines of the two cones.
   const float cos_outer = std::cos(light.outer_cone), cos_inner = std::cos(light.inner_cone);
-  const float ramp = (dot(dir, light.direction) - cos_outer) / std::max(cos_inner - cos_outer, 1e-4F);
+  const float ramp = (dot(dir, light.direction) - cos_outer) / std::max(cos_inner - cos_outer, 1e-7F);
   const float t = std::clamp(ramp, 0.0F, 1.0F);
   return light.intensity * (t * t);
 }

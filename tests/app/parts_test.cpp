@@ -5,6 +5,7 @@
 #include "api/display.h"
 #include "app/cli/bench.h"
 #include "app/cli/help.h"
+#include "app/cli/memory.h"
 #include "app/cli/options.h"
 #include "app/cli/picture.h"
 #include "app/cli/progress_bar.h"
@@ -47,6 +48,7 @@ TEST(Describe, HasOneFormAndLeavesOutWhatThereIsNot) {
 TEST(WrapText, KeepsLinesWithinTheWidthAndLosesNoWord) {
   EXPECT_EQ(wrapText("aa bb cc dd", 2, 7), "  aa bb\n  cc dd\n");
   EXPECT_EQ(wrapText("a-word-longer-than-the-line b", 0, 5), "a-word-longer-than-the-line\nb\n");
+  EXPECT_EQ(wrapText("a bb|cc|dd|ee f", 0, 6), "a bb|\ncc|dd|\nee f\n");
 }
 
 TEST(FormatProgress, TellsFractionElapsedAndRest) {
@@ -88,6 +90,12 @@ TEST(PeakMemory, SeesAnAllocationAndForgetsItWhenReset) {
   EXPECT_GT(with, before + 50);
   resetPeakMemory();
   EXPECT_LE(readPeakMemory(), with);
+}
+
+TEST(CheckMemory, RefusesWhatCannotFitAndSaysWhatToLower) {
+  EXPECT_NO_THROW(checkMemory(10, 10));
+  EXPECT_THROW(checkMemory(11, 10), ResourceError);
+  EXPECT_GT(readAvailableMemory(), 1);
 }
 
 LayeredImage makeLayer(const std::string& name, int channels, std::vector<float> pixels) {

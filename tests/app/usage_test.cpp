@@ -31,7 +31,7 @@ TEST(Help, GoesToStdoutAndNamesEveryCommand) {
   const ProcessResult result = runNephroid({"--help"});
   EXPECT_EQ(result.exit_code, 0);
   EXPECT_EQ(result.err, "");
-  for (const std::string& command : kCommands) EXPECT_THAT(result.out, HasSubstr(fmt::format("\n  {} ", command)));
+  for (const std::string& command : kCommands) EXPECT_THAT(result.out, HasSubstr(fmt::format("\n  {}\n", command)));
 }
 
 TEST(Help, OfEachCommandHasUsageAndFitsTheTerminal) {
@@ -39,9 +39,13 @@ TEST(Help, OfEachCommandHasUsageAndFitsTheTerminal) {
     const ProcessResult result = runNephroid({command, "--help"});
     EXPECT_EQ(result.exit_code, 0) << command;
     EXPECT_THAT(result.out, HasSubstr("Usage: nephroid " + command)) << command;
-    EXPECT_EQ(runNephroid({"help", command}).out, result.out) << command;
+    EXPECT_TRUE(runNephroid({"help", command}).out == result.out) << command;
+    std::istringstream lines(result.out.substr(0, result.out.find("Metrics:")));
+    for (std::string line; std::getline(lines, line) && line != "Examples:";) EXPECT_LE(line.size(), 80U) << line;
   }
 }
+
+TEST(Help, OfAnUnknownCommandIsWrongUsage) { expectUsageError({"help", "rendr"}, "no command 'rendr'"); }
 
 TEST(Help, OfRenderTeachesByExampleDefaultRangeAndUnit) {
   const std::string text = runNephroid({"render", "--help"}).out;
@@ -141,10 +145,12 @@ TEST(Manual, IsWellFormedRoff) {
 
 /// What bash offers for `line` with the cursor at its end.
 std::vector<std::string> complete(const std::string& line) {
-  const std::string script = "source <(" NEPHROID_PROGRAM
-                             " completion bash); COMP_LINE=$1; COMP_POINT=${#1}; _nephroid; printf '%s\\n' "
-                             "\"${COMPREPLY[@]}\"";
+  const std::string script =
+      "set -e; script=$(" NEPHROID_PROGRAM
+      " completion bash); eval \"$script\"; COMP_LINE=$1; COMP_POINT=${#1}; _nephroid; printf '%s\\n' "
+      "\"${COMPREPLY[@]}\"";
   const ProcessResult result = runProcess({"bash", "-c", script, "bash", line});
+  EXPECT_EQ(result.exit_code, 0);
   EXPECT_EQ(result.err, "");
   std::vector<std::string> words;
   std::istringstream stream(result.out);

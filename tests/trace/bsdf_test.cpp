@@ -4,6 +4,7 @@
 
 #include "core/sampling/sampler.h"
 #include "core/sampling/warp.h"
+#include "scene/classify.h"
 #include "support/tiny_scenes.h"
 
 namespace nephroid {

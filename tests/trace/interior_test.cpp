@@ -12,7 +12,7 @@ Material makeMedium(int priority = 0) {
 }
 
 TEST(InteriorList, IsEmptyInTheOpen) {
-  const InteriorList list;
+  const InteriorList list{};
   EXPECT_EQ(list.medium(), nullptr);
   EXPECT_FALSE(list.contains(0));
 }
@@ -59,7 +59,7 @@ TEST(Interface, OfLowerPrioritySolidInsideHigherIsNoEvent) {
 
 TEST(Interface, OpenSurfaceMetFromInsideLeavesItsMedium) {
   const Material water = makeMedium();
-  const InteriorList list;
+  const InteriorList list{};
   const Interface out = findInterface(list, 0, water, false);
   EXPECT_TRUE(out.is_event);
   EXPECT_EQ(out.from, &water);

@@ -11,6 +11,7 @@
 
 #include "app/cli/command.h"
 #include "app/cli/embedded.h"
+#include "app/cli/memory.h"
 #include "app/cli/options.h"
 #include "app/cli/progress_bar.h"
 #include "app/cli/scene_options.h"

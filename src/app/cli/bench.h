@@ -27,9 +27,4 @@ double computeMedian(std::vector<double> values);
 /// Half of the distance between the smallest and the largest value, relative to the median; 0 of fewer than two.
 double computeSpread(const std::vector<double>& values);
 
-/// Largest resident memory of this process since it was last reset, MiB; of its whole life where the system cannot
-/// reset it.
-double readPeakMemory();
-void resetPeakMemory();
-
 }  // namespace nephroid::cli

@@ -92,7 +92,7 @@ Command addCompletionCommand(CLI::App& root) {
   CLI::App* app = root.add_subcommand("completion", "Print the shell's completion script.");
   app->footer("Example:\n  source <(nephroid completion bash)");
   addValue(*app, "SHELL", *shell, "SHELL", {"The shell.", "bash", "bash", ""})->check(checkChoice({"bash"}));
-  return {app, [&root] {
+  return {app, [&root, shell] {
             writeStdout(formatScript(root));
             return ExitCode::kDone;
           }};

@@ -5,20 +5,26 @@
 #include <algorithm>
 
 #include "app/cli/command.h"
+#include "app/cli/options.h"
 #include "app/cli/terminal.h"
 
 namespace nephroid::cli {
 namespace {
-
-constexpr std::size_t kWidth = 80;
 
 bool isRoot(const CLI::App& app) { return app.get_parent() == nullptr; }
 
 std::string formatCommands(const CLI::App& root) {
   std::string text = "Commands:\n";
   for (const CLI::App* command : root.get_subcommands(nullptr))
-    text += fmt::format("  {:<12} {}\n", command->get_name(), command->get_description());
+    text += formatEntry(command->get_name(), command->get_description());
   return text + "\n";
+}
+
+/// " SCENE", " [NAME]" where it has a default, " [SCENE...]" where several are taken.
+std::string formatPositional(const CLI::Option& option) {
+  const std::string name = option.get_name(true) + (option.get_items_expected_max() > 1 ? "..." : "");
+  const bool is_optional = option.get_description().find("[default: ") != std::string::npos;
+  return is_optional ? fmt::format(" [{}]", name) : fmt::format(" {}", name);
 }
 
 }  // namespace
@@ -49,34 +55,40 @@ std::string formatFlags(const CLI::Option& option) {
 std::string wrapText(std::string_view text, std::size_t indent, std::size_t width) {
   std::string lines, line;
   const std::string margin(indent, ' ');
+  bool glued = false;  // the next piece continues a word
   while (!text.empty()) {
-    const std::size_t end = std::min(text.find(' '), text.size());
-    const std::string_view word = text.substr(0, end);
-    if (!line.empty() && indent + line.size() + 1 + word.size() > width) {
+    std::size_t end = std::min(text.find(' '), text.size());
+    const std::size_t bar = text.find('|');
+    if (bar < end && (glued || indent + end > width)) end = bar + 1;
+    const std::string_view piece = text.substr(0, end);
+    const std::string gap = line.empty() || glued ? "" : " ";
+    if (!line.empty() && indent + line.size() + gap.size() + piece.size() > width) {
       lines += margin + line + "\n";
-      line.clear();
+      line = piece;
+    } else {
+      line += gap;
+      line += piece;
     }
-    if (!line.empty()) line += ' ';
-    line += word;
-    text.remove_prefix(std::min(end + 1, text.size()));
+    glued = end < text.size() && text[end] != ' ';
+    text.remove_prefix(glued ? end : std::min(end + 1, text.size()));
   }
   return lines + margin + line + "\n";
 }
 
 std::string formatEntry(const std::string& name, const std::string& description) {
-  return fmt::format("  {}\n{}", name, wrapText(description, 6, kWidth));
+  return fmt::format("  {}\n{}", name, wrapText(description, 6, kHelpWidth));
 }
 
 std::string formatUsage(const CLI::App& app) {
   if (isRoot(app)) return "nephroid COMMAND [ARGUMENTS] [OPTIONS]";
   std::string text = "nephroid " + app.get_name();
   for (const CLI::Option* option : app.get_options())
-    if (option->get_positional()) text += " " + option->get_name(true);
+    if (option->get_positional()) text += formatPositional(*option);
   return text + " [OPTIONS]";
 }
 
 std::string formatHelp(const CLI::App& app) {
-  std::string text = wrapText(app.get_description(), 0, kWidth) + "\nUsage: " + formatUsage(app) + "\n\n";
+  std::string text = wrapText(app.get_description(), 0, kHelpWidth) + "\nUsage: " + formatUsage(app) + "\n\n";
   if (isRoot(app)) text += formatCommands(app);
   for (const OptionGroup& group : groupOptions(app)) {
     text += group.name + ":\n";
@@ -87,19 +99,24 @@ std::string formatHelp(const CLI::App& app) {
   return text + app.get_footer() + "\n";
 }
 
+bool answerHelp(const CLI::App& root, std::span<char* const> arguments) {
+  if (arguments.size() < 2 || std::string_view(arguments[1]) != "help") return false;
+  const std::string topic = arguments.size() > 2 ? arguments[2] : "";
+  if (topic.starts_with("-")) return false;
+  const CLI::App* found = topic.empty() ? &root : nullptr;
+  for (const CLI::App* command : root.get_subcommands(nullptr))
+    if (command->get_name() == topic) found = command;
+  if (found == nullptr) throw UsageError(fmt::format("no command '{}'; 'nephroid --help' lists them", topic));
+  writeStdout(formatHelp(*found));
+  return true;
+}
+
 Command addHelpCommand(CLI::App& root) {
-  const auto topic = std::make_shared<std::string>();
   CLI::App* app = root.add_subcommand("help", "Explain a command, as its --help does.");
-  app->add_option("COMMAND", *topic, "The command to explain.")->type_name("COMMAND");
-  return {app, [&root, topic] {
-            const CLI::App* found = topic->empty() ? &root : nullptr;
-            for (const CLI::App* command : root.get_subcommands(nullptr))
-              if (command->get_name() == *topic) found = command;
-            if (found == nullptr)
-              throw UsageError(fmt::format("no command '{}'; 'nephroid --help' lists them", *topic));
-            writeStdout(formatHelp(*found));
-            return ExitCode::kDone;
-          }};
+  app->add_option_function<std::string>(
+         "COMMAND", [](const std::string&) {}, describe({"The command to explain.", "the whole program", "", ""}))
+      ->type_name("COMMAND");
+  return {app, [] { return ExitCode::kDone; }};
 }
 
 }  // namespace nephroid::cli

@@ -3,11 +3,15 @@
 
 #include <CLI/CLI.hpp>
 
+#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
 
 namespace nephroid::cli {
+
+/// Columns of all help: what every terminal shows.
+inline constexpr std::size_t kHelpWidth = 80;
 
 /// Options of one group, in the order of their declaration.
 struct OptionGroup {
@@ -24,8 +28,14 @@ std::string formatFlags(const CLI::Option& option);
 /// A name and its description, wrapped and indented.
 std::string formatEntry(const std::string& name, const std::string& description);
 
-/// `text` broken at spaces into lines of at most `width` columns, each after `indent` spaces.
+/// `text` broken at spaces, and at '|' in what is longer than a line, into lines of at most `width` columns, each after
+/// `indent` spaces.
 std::string wrapText(std::string_view text, std::size_t indent, std::size_t width);
+
+/// Answers `nephroid help [COMMAND]`, which the parser would take for the command itself.
+/// @return whether that is what the command line says
+/// @throws UsageError for an unknown command
+bool answerHelp(const CLI::App& root, std::span<char* const> arguments);
 
 /// What `nephroid --help` (for the root) or `nephroid COMMAND --help` prints.
 std::string formatHelp(const CLI::App& app);

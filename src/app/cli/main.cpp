@@ -24,8 +24,9 @@ constexpr const char* kFooter = R"(Start here:
   nephroid render --help
 
 Results go to stdout or to the named file, everything else to stderr.
-Exit codes: 0 done, 1 internal failure, 2 wrong usage, 3 bad input, 4 no suitable
-device, 5 out of memory or disk, 130 interrupted (a render keeps what it has).)";
+Exit codes: 0 done, 1 internal failure, 2 wrong usage, 3 bad input, 4 no
+suitable device, 5 out of memory or disk, 130 interrupted (a render keeps what
+it has).)";
 
 std::vector<std::string> commandNames(const CLI::App& root) {
   std::vector<std::string> names;
@@ -91,6 +92,7 @@ ExitCode runProgram(int argc, char** argv) {
   const std::vector<Command> commands{addRenderCommand(root),     addCompareCommand(root), addBenchCommand(root),
                                       addInfoCommand(root),       addScenesCommand(root),  addTechniquesCommand(root),
                                       addCompletionCommand(root), addManualCommand(root),  addHelpCommand(root)};
+  if (answerHelp(root, {argv, static_cast<std::size_t>(argc)})) return ExitCode::kDone;
   return runCommandLine(root, commands, argc, argv);
 }
 

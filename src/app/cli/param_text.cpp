@@ -47,6 +47,11 @@ std::string formatParams(std::span<const ParamSpec> specs) {
   return text;
 }
 
+std::string formatHeading(const std::string& name, const std::string& text, const std::string& source) {
+  return wrapText(fmt::format("{} - {}{}", name, text, source.empty() ? "" : fmt::format(" ({})", source)), 0,
+                  kHelpWidth);
+}
+
 nlohmann::ordered_json paramsToJson(std::span<const ParamSpec> specs) {
   nlohmann::ordered_json list = nlohmann::ordered_json::array();
   for (const ParamSpec& spec : specs) {

@@ -7,6 +7,7 @@
 #include <optional>
 
 #include "app/cli/command.h"
+#include "app/cli/memory.h"
 #include "app/cli/options.h"
 #include "app/cli/picture.h"
 #include "app/cli/progress_bar.h"
@@ -155,6 +156,14 @@ Outcome renderPicture(const RenderOptions& options, RenderSettings settings, con
   return outcome;
 }
 
+/// Each layer is held at least twice: where it is summed, and as the picture.
+double estimateMemory(const RenderSettings& settings) {
+  constexpr double kBytesPerMib = 1 << 20;
+  int channels = 0;
+  for (const std::string& layer : settings.layers) channels += findLayerInfo(layer).channels;
+  return 2.0 * sizeof(float) * channels * settings.width * settings.height / kBytesPerMib;
+}
+
 ExitCode runRender(const RenderOptions& options) {
   if (options.output.empty()) throw UsageError("render: no output given; add -o picture.png or -o picture.exr");
   checkDevice(options.device);
@@ -162,6 +171,8 @@ ExitCode runRender(const RenderOptions& options) {
   settings.layers = parseLayerList(options.aov);
   const std::optional<FrameRange> frames = parseFrames(options.frames);
   checkPicture(frames ? frameName(options.output, frames->first) : options.output, settings.layers, options.picture);
+
+  checkMemory(estimateMemory(settings), readAvailableMemory());
 
   bool interrupted = false;
   Json report = Json::array();

@@ -36,8 +36,7 @@ std::vector<const BuiltinScene*> chooseScenes(const std::string& name) {
 }
 
 std::string formatScene(const BuiltinScene& scene) {
-  return fmt::format("builtin:{} - {} Source: {}.\n{}\n", scene.name, scene.text, scene.source,
-                     formatParams(scene.params));
+  return formatHeading("builtin:" + scene.name, scene.text, scene.source) + formatParams(scene.params) + "\n";
 }
 
 nlohmann::ordered_json toJson(const BuiltinScene& scene) {

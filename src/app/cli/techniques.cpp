@@ -22,8 +22,7 @@ struct TechniquesOptions {
 };
 
 std::string formatTechnique(const Technique& technique) {
-  return fmt::format("{} - {} Source: {}.\n{}\n", technique.name, technique.text, technique.source,
-                     formatParams(technique.params));
+  return formatHeading(technique.name, technique.text, technique.source) + formatParams(technique.params) + "\n";
 }
 
 nlohmann::ordered_json toJson(const Technique& technique) {

@@ -1,6 +1,7 @@
 // EXR as a texture or an environment: RGB or RGBA of the first part that has colour.
 
-#include <array>
+#include <utility>
+#include <vector>
 
 #include <fmt/format.h>
 
@@ -41,8 +42,8 @@ Image readColour(const ExrFile& file, int part) {
   if (!has_rgb && hasChannels(header, {"RY", "BY"})) return file.readLuminanceChroma();
   std::vector<std::string> names = has_rgb ? std::vector<std::string>{"R", "G", "B"} : std::vector<std::string>{"Y"};
   if (hasChannels(header, {"A"})) names.emplace_back("A");
-  Image image = file.readChannels(part, names);
-  return has_rgb ? image : spreadGrey(image);
+  std::vector<Image> images = file.readImages(part, std::span(&names, 1));
+  return has_rgb ? std::move(images.front()) : spreadGrey(images.front());
 }
 
 }  // namespace

@@ -15,6 +15,8 @@
 #include <cstring>
 #include <optional>
 
+#include "core/image/exr_chunks.h"
+
 namespace nephroid {
 
 /// Memory as OpenEXR's input; reading beyond the end throws. It has no name: our messages name the file themselves.
@@ -68,16 +70,17 @@ std::optional<std::string_view> takeName(std::string_view& rest) {
 /// OpenEXR takes memory for an attribute before it reads it, up to 2 GiB, and fills it: so every attribute of every
 /// header must fit into the file. (Name, type, size, that many bytes; an empty name ends a header, and in files of
 /// several parts an empty header ends the headers.)
-void checkAttributeSizes(std::span<const std::byte> bytes) {
+/// @return the offset of what follows the headers: the tables of block offsets
+std::size_t checkAttributeSizes(std::span<const std::byte> bytes) {
   constexpr std::size_t kPreambleSize = 8;  // magic number, version and flags
   std::string_view rest(reinterpret_cast<const char*>(bytes.data()), bytes.size());
   rest.remove_prefix(std::min(kPreambleSize, rest.size()));
-  const bool multi_part = bytes.size() >= kPreambleSize && (bytes[5] & std::byte{0x10}) != std::byte{0};
+  const bool multi_part = bytes.size() >= kPreambleSize && Imf::isMultiPart(std::to_integer<int>(bytes[5]) << 8);
   for (bool header_is_empty = true;;) {
     const std::optional<std::string_view> name = takeName(rest);
     if (!name) throw Iex::InputExc("the header has no end");
     if (name->empty()) {
-      if (!multi_part || header_is_empty) return;
+      if (!multi_part || header_is_empty) return bytes.size() - rest.size();
       header_is_empty = true;
       continue;
     }
@@ -92,8 +95,7 @@ void checkAttributeSizes(std::span<const std::byte> bytes) {
   }
 }
 
-int getStripRows(const Imf::Header& header) {
-  if (!header.hasTileDescription()) return kStripRows;
+int getTileStripRows(const Imf::Header& header) {
   const int tile_rows = static_cast<int>(header.tileDescription().ySize);
   return std::max(tile_rows, kStripRows / tile_rows * tile_rows);
 }
@@ -114,6 +116,17 @@ Image makeEmptyImage(const Imath::Box2i& window, int channels) {
   return image;
 }
 
+/// Grows `image` by the rows of `strip` and makes them the target of its channels.
+void appendRows(Image& image, std::span<const std::string> names, const Imath::Box2i& strip, Imf::FrameBuffer& target) {
+  const std::size_t row_samples = static_cast<std::size_t>(image.width) * names.size();
+  const int rows = strip.max.y - strip.min.y + 1;
+  const std::size_t begin = image.pixels.size();
+  image.pixels.resize(begin + row_samples * static_cast<std::size_t>(rows));
+  for (std::size_t c = 0; c < names.size(); ++c)
+    target.insert(names[c], Imf::Slice::Make(Imf::FLOAT, image.pixels.data() + begin + c, strip.min, image.width, rows,
+                                             names.size() * sizeof(float), row_samples * sizeof(float)));
+}
+
 /// The rows [first, last] of the data window, in strips from the top.
 template <class Function>
 void forEachStrip(const Imath::Box2i& window, int rows, const Function& read) {
@@ -125,7 +138,7 @@ void forEachStrip(const Imath::Box2i& window, int rows, const Function& read) {
 
 ExrFile::ExrFile(std::span<const std::byte> bytes, const std::string& label)
     : bytes_(bytes), label_(label), stream_(makeStream()) {
-  checkAttributeSizes(bytes);
+  tables_begin_ = checkAttributeSizes(bytes);
   // No threads of OpenEXR's own, and no guessing of a damaged table of offsets: what is missing is an error.
   file_ = std::make_unique<Imf::MultiPartInputFile>(*stream_, 0, false);
 }
@@ -142,6 +155,11 @@ bool ExrFile::isDeep(int part) const {
   return Imf::isNonImage(file_->version()) && header(part).hasType() && !Imf::isImage(header(part).type());
 }
 
+bool ExrFile::isTiled(int part) const {
+  if (Imf::isMultiPart(file_->version())) return header(part).hasType() && Imf::isTiled(header(part).type());
+  return Imf::isTiled(file_->version());
+}
+
 void ExrFile::checkPart(int part) const {
   if (isDeep(part))
     throw InputError(label_ +
@@ -156,7 +174,7 @@ void ExrFile::checkPart(int part) const {
         fmt::format("{}: OpenEXR image of {} channels, {} pixels wide; at most {} samples in a row are "
                     "accepted; remove channels",
                     label_, channel_count, width, kMaxRowSamples));
-  if (!head.hasTileDescription()) return;
+  if (!isTiled(part)) return;
   const Imf::TileDescription& tile = head.tileDescription();
   if (tile.xSize < 1 || tile.ySize < 1 || std::uint64_t{tile.xSize} * tile.ySize > kMaxTilePixels)
     throw InputError(
@@ -165,31 +183,36 @@ void ExrFile::checkPart(int part) const {
                     label_, tile.xSize, tile.ySize, kMaxTilePixels));
 }
 
-Image ExrFile::readChannels(int part, std::span<const std::string> names) const {
+void ExrFile::checkBlocks(int part) const {
+  std::size_t table_begin = tables_begin_;
+  for (int before = 0; before < part; ++before)
+    table_begin += sizeof(std::uint64_t) * static_cast<std::size_t>(std::max(header(before).chunkCount(), 0));
+  checkExrChunks(bytes_, {table_begin, Imf::isMultiPart(file_->version()), isTiled(part)}, header(part));
+}
+
+std::vector<Image> ExrFile::readImages(int part, std::span<const std::vector<std::string>> channel_lists) const {
   checkPart(part);
+  checkBlocks(part);
   const Imath::Box2i window = header(part).dataWindow();
   Imf::InputPart input(*file_, part);
-  Image image = makeEmptyImage(window, static_cast<int>(names.size()));
-  const std::size_t row_samples = static_cast<std::size_t>(image.width) * names.size();
-  forEachStrip(window, getStripRows(header(part)), [&](int first, int last) {
-    const std::size_t begin = image.pixels.size();
-    const int rows = last - first + 1;
-    image.pixels.resize(begin + row_samples * static_cast<std::size_t>(rows));
+  std::vector<Image> images;
+  for (const auto& names : channel_lists) images.push_back(makeEmptyImage(window, static_cast<int>(names.size())));
+  const int strip_rows = isTiled(part) ? getTileStripRows(header(part)) : kStripRows;
+  forEachStrip(window, strip_rows, [&](int first, int last) {
     Imf::FrameBuffer target;
-    for (std::size_t c = 0; c < names.size(); ++c)
-      target.insert(names[c],
-                    Imf::Slice::Make(Imf::FLOAT, image.pixels.data() + begin + c, Imath::V2i(window.min.x, first),
-                                     image.width, rows, names.size() * sizeof(float), row_samples * sizeof(float)));
+    for (std::size_t i = 0; i < images.size(); ++i)
+      appendRows(images[i], channel_lists[i], Imath::Box2i({window.min.x, first}, {window.max.x, last}), target);
     input.setFrameBuffer(target);
     input.readPixels(first, last);
   });
-  return image;
+  return images;
 }
 
 Image ExrFile::readLuminanceChroma() const {
   if (partCount() != 1)
     throw InputError(label_ + ": luminance-chroma OpenEXR images of several parts are not supported; store it as RGB");
   checkPart(0);
+  checkBlocks(0);
   const Imath::Box2i window = header(0).dataWindow();
   const std::unique_ptr<Stream> stream = makeStream();
   Imf::RgbaInputFile input(*stream, 0);

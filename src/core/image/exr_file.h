@@ -33,9 +33,9 @@ class ExrFile {
   /// @throws InputError
   void checkPart(int part) const;
 
-  /// The named channels, interleaved in this order, as 32-bit floats; the highest resolution only.
+  /// One image per list of channel names, interleaved in this order, as 32-bit floats; the highest resolution only.
   /// The memory grows with the rows that could be decoded, so a small file that claims a large picture costs little.
-  Image readChannels(int part, std::span<const std::string> names) const;
+  std::vector<Image> readImages(int part, std::span<const std::vector<std::string>> channel_lists) const;
 
   /// RGB of a file of one part that holds Y and, at half resolution, RY and BY.
   Image readLuminanceChroma() const;
@@ -43,9 +43,12 @@ class ExrFile {
  private:
   class Stream;
   std::unique_ptr<Stream> makeStream() const;
+  bool isTiled(int part) const;
+  void checkBlocks(int part) const;
 
   std::span<const std::byte> bytes_;
   std::string label_;
+  std::size_t tables_begin_ = 0;
   std::unique_ptr<Stream> stream_;
   std::unique_ptr<Imf::MultiPartInputFile> file_;
 };

@@ -84,8 +84,14 @@ std::vector<Layer> readLayers(const ExrFile& file) {
     layers.push_back({std::string(kBaseLayer), file.readLuminanceChroma()});
     return layers;
   }
-  for (const LayerChannels& layer : groupChannels(header))
-    layers.push_back({layer.name, file.readChannels(0, layer.channels)});
+  std::vector<std::vector<std::string>> channel_lists;
+  for (LayerChannels& layer : groupChannels(header)) {
+    layers.push_back({std::move(layer.name), Image()});
+    channel_lists.push_back(std::move(layer.channels));
+  }
+  // All at once: the blocks of the file hold all channels and would be unpacked for each layer.
+  std::vector<Image> images = file.readImages(0, channel_lists);
+  for (std::size_t i = 0; i < layers.size(); ++i) layers[i].image = std::move(images[i]);
   return layers;
 }
 

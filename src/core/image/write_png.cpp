@@ -5,7 +5,7 @@
 #include <png.h>
 
 #include <algorithm>
-#include <array>
+#include <cmath>
 #include <csetjmp>
 #include <cstdio>
 #include <cstring>
@@ -95,7 +95,7 @@ bool writePngStream(png_structp png, png_infop info, PngSink* sink, PngContent* 
 
 /// To the nearest of 256 steps; NaN becomes 0.
 std::uint8_t quantise(float value) {
-  return value > 0.0F ? static_cast<std::uint8_t>(std::min(value, 1.0F) * 255.0F + 0.5F) : std::uint8_t{0};
+  return value > 0.0F ? static_cast<std::uint8_t>(std::lround(std::min(value, 1.0F) * 255.0F)) : std::uint8_t{0};
 }
 
 bool isAscii(std::string_view text) {

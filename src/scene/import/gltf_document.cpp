@@ -66,14 +66,27 @@ Container openContainer(std::span<const std::byte> file, const Document& documen
   return container;
 }
 
-json parseJson(std::string_view text, const Document& document) {
-  const auto check_depth = [&](int depth, json::parse_event_t, json&) {
+/// Refuses text that nests too deep. On the text and not while parsing: the JSON library's parser with a callback looks
+/// at all earlier siblings after each object, which takes hours for a million nodes.
+void checkDepth(std::string_view text, const Document& document) {
+  int depth = 0;
+  bool in_string = false;
+  for (std::size_t i = 0; i < text.size(); ++i) {
+    const char c = text[i];
+    if (in_string && c == '\\') ++i;  // the next character is escaped
+    if (c == '"') in_string = !in_string;
+    if (in_string) continue;
+    if (c == '{' || c == '[') ++depth;
+    if (c == '}' || c == ']') --depth;
     if (depth > kMaxJsonDepth)
       document.fail("JSON", fmt::format("nested more than {} levels deep; no glTF file needs that", kMaxJsonDepth));
-    return true;
-  };
+  }
+}
+
+json parseJson(std::string_view text, const Document& document) {
+  checkDepth(text, document);
   try {
-    json root = json::parse(text.begin(), text.end(), check_depth);
+    json root = json::parse(text.begin(), text.end());
     if (!root.is_object())
       document.fail("JSON", fmt::format("found {} at the top, expected an object", root.type_name()));
     return root;

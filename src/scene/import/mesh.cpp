@@ -163,6 +163,18 @@ std::vector<PlacedMesh> collectParts(const aiScene& scene, const std::filesystem
   return parts;
 }
 
+/// Assimp's later steps, its own validation among them, trust the indices that its readers took from the file.
+void checkIndices(const aiScene& scene, const std::filesystem::path& path) {
+  for (unsigned m = 0; m < scene.mNumMeshes; ++m) {
+    const aiMesh& mesh = *scene.mMeshes[m];
+    for (unsigned f = 0; f < mesh.mNumFaces; ++f)
+      for (unsigned k = 0; k < mesh.mFaces[f].mNumIndices; ++k)
+        if (mesh.mFaces[f].mIndices[k] >= mesh.mNumVertices)
+          fail(path, fmt::format("face {}: index {} is not below {} vertices", f, mesh.mFaces[f].mIndices[k],
+                                 mesh.mNumVertices));
+  }
+}
+
 Mesh importWithAssimp(const std::filesystem::path& path, const std::string& extension) {
   const std::vector<std::byte> bytes = readFile(path, std::uint64_t{2} << 30);
   if (bytes.empty()) fail(path, "is empty");
@@ -171,12 +183,14 @@ Mesh importWithAssimp(const std::filesystem::path& path, const std::string& exte
   importer.SetIOHandler(new NoFiles);  // the importer owns it
   keepOnlyLoader(importer, extension);
   importer.SetPropertyInteger(AI_CONFIG_PP_SBP_REMOVE, aiPrimitiveType_POINT | aiPrimitiveType_LINE);
-  // Validation comes first: the other steps trust the indices.
-  const unsigned steps =
-      aiProcess_ValidateDataStructure | aiProcess_Triangulate | aiProcess_SortByPType | aiProcess_JoinIdenticalVertices;
-  const aiScene* scene = importer.ReadFileFromMemory(bytes.data(), bytes.size(), steps, extension.c_str());
-  if (scene == nullptr)
-    fail(path, fmt::format("cannot be read as {} ({})", extension, cleanName(importer.GetErrorString())));
+  const auto check = [&](const aiScene* scene) {
+    if (scene == nullptr)
+      fail(path, fmt::format("cannot be read as {} ({})", extension, cleanName(importer.GetErrorString())));
+    return scene;
+  };
+  checkIndices(*check(importer.ReadFileFromMemory(bytes.data(), bytes.size(), 0, extension.c_str())), path);
+  const aiScene* scene = check(importer.ApplyPostProcessing(aiProcess_ValidateDataStructure | aiProcess_Triangulate |
+                                                            aiProcess_SortByPType | aiProcess_JoinIdenticalVertices));
   return merge(collectParts(*scene, path), path);
 }
 

@@ -35,7 +35,11 @@ struct LayerNeeds {
   bool beyondDiffuse() const { return indirect || irradiance; }
   /// Must paths from the eye follow a first specular event?
   bool throughSpecular() const { return specular || specular_caustic; }
-  bool radiance() const { return emission || direct || caustic || specular || indirect || irradiance || specular_caustic; }
+  /// What paths from the eye must be traced for.
+  bool eyeTraced(bool light_tracing) const {
+    const bool caustics_too = !light_tracing && (caustic || irradiance_caustic);
+    return emission || direct || specular || indirect || irradiance || specular_caustic || caustics_too;
+  }
   /// What photons must be traced for.
   bool lightTraced() const { return caustic || indirect || irradiance || irradiance_caustic; }
 };

@@ -83,7 +83,7 @@ class ReferenceRender {
     constexpr std::uint64_t kUnlimited = std::uint64_t{1} << 62;
     samples_budget_ = settings_.samples ? settings_.samples : timed_only ? kUnlimited : kDefaultSamples;
     photons_budget_ = settings_.photons ? settings_.photons : timed_only ? kUnlimited : kDefaultPhotons;
-    if (!needs_.radiance()) samples_budget_ = 0;
+    if (!needs_.eyeTraced(world_.options.light_tracing)) samples_budget_ = 0;
     if (!light_tracer_) photons_budget_ = 0;
     if (photons_budget_ > 0 && photons_budget_ < kUnlimited) {
       const std::uint64_t batches = (photons_budget_ + kBatchPhotons - 1) / kBatchPhotons;
@@ -194,14 +194,14 @@ class ReferenceRender {
   }
 
   static void sortByBand(std::vector<Splat>& splats, std::size_t band_pixels, std::vector<std::uint32_t>& band_begin) {
-    std::stable_sort(splats.begin(), splats.end(), [band_pixels](const Splat& a, const Splat& b) {
-      return a.pixel / band_pixels < b.pixel / band_pixels;
-    });
-    band_begin.assign(kSplatBands + 1, static_cast<std::uint32_t>(splats.size()));
-    for (std::size_t i = splats.size(); i-- > 0;)
-      for (std::size_t band = 0; band <= splats[i].pixel / band_pixels; ++band) 
-        band_begin[band] = std::min(band_begin[band], static_cast<std::uint32_t>(i));
-    for (std::size_t band = kSplatBands; band-- > 0;) band_begin[band] = std::min(band_begin[band], band_begin[band + 1]);
+    // Counting sort: stable, so that the sums keep the order of the photons.
+    band_begin.assign(kSplatBands + 1, 0);
+    for (const Splat& splat : splats) ++band_begin[splat.pixel / band_pixels + 1];
+    for (std::size_t band = 0; band < kSplatBands; ++band) band_begin[band + 1] += band_begin[band];
+    std::vector<std::uint32_t> next(band_begin.begin(), band_begin.end() - 1);
+    std::vector<Splat> sorted(splats.size());
+    for (const Splat& splat : splats) sorted[next[splat.pixel / band_pixels]++] = splat;
+    splats = std::move(sorted);
   }
 
   void addSplat(const Splat& splat, float scale) {

@@ -6,7 +6,9 @@
 #include <ImfTiledOutputFile.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <zlib.h>
 
+#include <algorithm>
 #include <cmath>
 #include <cstring>
 #include <filesystem>
@@ -175,7 +177,7 @@ TEST(Exr, OffsetDataWindowAndAlphaAreRead) {
   EXPECT_EQ(layers.find("beauty")->channels, 3);
 }
 
-TEST(Exr, TilesAndBottomUpLinesAreRead) {
+TEST(Exr, LevelZeroOfTilesIsRead) {
   const TemporaryPath path(".exr");
   const Image image = makeNoise(40, 600, 3, 8);
   Imf::Header header(40, 600);
@@ -260,6 +262,59 @@ TEST(Exr, AttributeLongerThanTheFileIsRefused) {
   using namespace std::string_view_literals;
   const auto bytes = makeBytes("\x76\x2f\x31\x01\x02\0\0\0comment\0string\0\xf0\xff\xff\x7fshort"sv);
   EXPECT_THAT(getRefusal(bytes), HasSubstr("attribute 'comment' is longer than the file"));
+}
+
+/// A file of one ZIP block, and where that block begins (its row, its size, its data).
+std::pair<std::vector<std::byte>, std::size_t> makeOneBlock() {
+  const TemporaryPath path(".exr");
+  LayeredImage image = makeLayers(16, 16);
+  image.layers.resize(1);
+  image.layers[0].image = Image(16, 16, 3, 0.5F);
+  writeExr(path.get(), image);
+  const std::vector<std::byte> bytes = readFile(path.get());
+  // The table of one offset stands right before the block that it points to.
+  for (std::size_t at = 8; at + 8 < bytes.size(); ++at) {
+    std::uint64_t offset = 0;
+    std::memcpy(&offset, bytes.data() + at - 8, sizeof offset);
+    if (offset == at) return {bytes, at};
+  }
+  return {bytes, 0};
+}
+
+TEST(Exr, BlockThatUnpacksToTooLittleIsRefused) {
+  // Older libraries fill up such blocks with stray memory.
+  const auto [bytes, block] = makeOneBlock();
+  ASSERT_GT(block, 0U);
+  EXPECT_EQ(getRefusal(bytes), "decoded");
+  std::vector<std::byte> empty = bytes;
+  std::fill_n(empty.begin() + static_cast<std::ptrdiff_t>(block) + 4, 4, std::byte{0});
+  EXPECT_THAT(getRefusal(empty), HasSubstr("a block of pixels has the wrong length"));
+
+  std::vector<std::byte> brief(bytes.begin(), bytes.begin() + static_cast<std::ptrdiff_t>(block) + 8);
+  const std::vector<Bytef> pixels(16 * 16 * 3 * 4 - 1, 7);  // one byte too few
+  std::vector<Bytef> packed(compressBound(static_cast<uLong>(pixels.size())));
+  auto size = static_cast<uLongf>(packed.size());
+  ASSERT_EQ(compress(packed.data(), &size, pixels.data(), static_cast<uLong>(pixels.size())), Z_OK);
+  const auto size_in_file = static_cast<std::uint32_t>(size);
+  std::memcpy(brief.data() + block + 4, &size_in_file, sizeof size_in_file);
+  for (std::size_t i = 0; i < size; ++i) brief.push_back(static_cast<std::byte>(packed[i]));
+  EXPECT_THAT(getRefusal(brief), HasSubstr("a block of pixels has the wrong length"));
+}
+
+TEST(Exr, EveryCompressionIsRead) {
+  const TemporaryPath path(".exr");
+  Image image(50, 70, 3);
+  for (std::size_t i = 0; i < image.pixels.size(); ++i) image.pixels[i] = static_cast<float>(i % 97) / 64.0F;
+  for (int compression = 0; compression < Imf::DWAA_COMPRESSION; ++compression)
+    for (const bool tiled : {false, true}) {
+      Imf::Header header(50, 70);
+      header.dataWindow() = Imath::Box2i(Imath::V2i(-7, -13), Imath::V2i(42, 56));
+      header.compression() = static_cast<Imf::Compression>(compression);
+      header.lineOrder() = tiled ? Imf::INCREASING_Y : Imf::DECREASING_Y;
+      writeChannels(path.get(), image, {"R", "G", "B"}, header, tiled);
+      // B44 leaves 32-bit channels alone, PXR24 keeps 15 bits of the mantissa and these values need fewer.
+      EXPECT_TRUE(areSameBits(decodeFile(path.get()).pixels, image.pixels)) << compression << ' ' << tiled;
+    }
 }
 
 TEST(Exr, PictureThatTheFileCannotHoldIsRefused) {

@@ -22,6 +22,8 @@ constexpr int kScramblings = 16;
 constexpr double kSignificance = 0.01;
 
 Camera lookFromAbove() { return makeCamera("above", vec3(3.5F, 5.0F, 3.0F), vec3(0.3F, 0, 0.3F), radians(50)); }
+/// The floor beside the ball, where most of what the ball sends down arrives.
+Camera lookAtCaustic() { return makeCamera("caustic", vec3(3.5F, 4.0F, 3.0F), vec3(0.8F, 0, 0.7F), radians(22)); }
 
 Material makeLamp(vec3 radiance) {
   Material lamp;
@@ -31,26 +33,36 @@ Material makeLamp(vec3 radiance) {
   return lamp;
 }
 
-/// A large lamp, so that both directions of transport converge.
+/// A large lamp, so that both directions of transport converge: overhead for what transmits, at the side for what
+/// only reflects, so that the light is sent down to the floor that is looked at.
 SceneData makeLampScene(Material material) {
-  SceneData scene = test::makeBallScene(std::move(material), 256);
-  addObject(scene, makeRectangle("lamp", dvec3(-1, 4, -1), dvec3(1, 0, 0), dvec3(0, 0, 1)), makeLamp(vec3(5.0F, 4.0F, 3.0F)));
+  const bool overhead = material.transmits();
+  SceneData scene = test::makeBallScene(std::move(material), 128);
+  if (!overhead) {
+    addObject(scene, makeRectangle("lamp", dvec3(4.5, 1.5, 1.0), dvec3(0, 0, 2.5), dvec3(0, 1.5, 0)), makeLamp(vec3(5.0F, 4.0F, 3.0F)));
+    return scene;
+  }
+  addObject(scene, makeRectangle("lamp", dvec3(0, 4, 0), dvec3(2.5, 0, 0), dvec3(0, 0, 2.5)), makeLamp(vec3(5.0F, 4.0F, 3.0F)));
   return scene;
 }
 
-/// Means over 8 × 8 blocks of a layer for each scrambling: [block][scrambling].
+/// The picture is cut into this many blocks each way; a block must be wide enough for its mean to be nearly normal.
+constexpr int kBlocks = 4;
+
+/// Means over the blocks of a layer for each scrambling: [block][scrambling].
 std::vector<std::vector<double>> blockMeans(const SceneData& scene, RenderSettings settings, const std::string& layer) {
-  std::vector<std::vector<double>> means(64);
+  std::vector<std::vector<double>> means(kBlocks * kBlocks);
   for (int s = 0; s < kScramblings; ++s) {
     settings.seed = static_cast<std::uint64_t>(1000 + s);
-    const RenderResult result = renderReference(scene, lookFromAbove(), settings);
+    const RenderResult result = renderReference(scene, lookAtCaustic(), settings);
     const Image& image = *result.image.find(layer);
-    const int block = image.width / 8;
-    for (int b = 0; b < 64; ++b) {
+    const int block = image.width / kBlocks;
+    for (int b = 0; b < kBlocks * kBlocks; ++b) {
       double sum = 0.0;
       for (int y = 0; y < block; ++y)
-        for (int x = 0; x < block; ++x) sum += luminance(image.rgb((b % 8) * block + x, (b / 8) * block + y));
-      means[b].push_back(sum / (block * block));
+        for (int x = 0; x < block; ++x)
+          sum += luminance(image.rgb((b % kBlocks) * block + x, (b / kBlocks) * block + y));
+      means[static_cast<std::size_t>(b)].push_back(sum / (block * block));
     }
   }
   return means;
@@ -61,32 +73,33 @@ struct Moments {
 };
 Moments momentsOf(const std::vector<double>& values) {
   Moments m;
-  for (const double v : values) m.mean += v / static_cast<double>(values.size());
-  for (const double v : values)
-    m.variance_of_mean += (v - m.mean) * (v - m.mean) / (static_cast<double>(values.size()) * static_cast<double>(values.size() - 1));
+  const auto n = static_cast<double>(values.size());
+  for (const double v : values) m.mean += v / n;
+  for (const double v : values) m.variance_of_mean += (v - m.mean) * (v - m.mean) / (n * (n - 1.0));
   return m;
 }
 
-/// Student's t for 15 to 30 degrees of freedom is wider than the normal: the bound is that of t with 30 at Šidák's level.
+/// z-test, block by block and of the whole. Blocks that hold under a tenth of the average are left to the whole: a
+/// handful of paths from the eye finds them, and the mean of a handful is not normal.
 void expectAgreement(const std::vector<std::vector<double>>& a, const std::vector<std::vector<double>>& b) {
-  // 64 blocks: each at 1 − (1 − 0.01)^(1/64) = 1.57e-4; t_30 there is 4.3.
-  constexpr double kBound = 4.3;
+  // 16 blocks and the whole, each at 1 − (1 − 0.01)^(1/17) = 5.9e-4, two-sided; Student's t of 30 degrees is 3.8 there.
+  constexpr double kBound = 3.8;
   static_assert(kSignificance == 0.01);
   double total_a = 0, total_b = 0, total_variance = 0;
   for (std::size_t i = 0; i < a.size(); ++i) {
     const Moments ma = momentsOf(a[i]), mb = momentsOf(b[i]);
+    total_a += ma.mean, total_b += mb.mean, total_variance += ma.variance_of_mean + mb.variance_of_mean;
+  }
+  for (std::size_t i = 0; i < a.size(); ++i) {
+    const Moments ma = momentsOf(a[i]), mb = momentsOf(b[i]);
+    if (ma.mean < 0.1 * total_a / static_cast<double>(a.size())) continue;
     const double error = std::sqrt(ma.variance_of_mean + mb.variance_of_mean);
-    total_a += ma.mean, total_b += mb.mean, total_variance += error * error;
-    if (error == 0.0) {
-      EXPECT_EQ(ma.mean, mb.mean) << "block " << i;
-      continue;
-    }
-    EXPECT_LT(std::abs(ma.mean - mb.mean) / error, kBound) << "block " << i << ": " << ma.mean << " and " << mb.mean;
+    EXPECT_LT(std::abs(ma.mean - mb.mean), kBound * error) << "block " << i << ": " << ma.mean << " and " << mb.mean;
   }
   EXPECT_GT(total_a, 0.0);
-  EXPECT_LT(std::abs(total_a - total_b) / std::sqrt(total_variance), 3.0) << total_a << " and " << total_b;
-  // The test must have power: a hundredth of the whole would show.
-  EXPECT_LT(std::sqrt(total_variance) / total_a, 0.01);
+  EXPECT_LT(std::abs(total_a - total_b), kBound * std::sqrt(total_variance)) << total_a << " and " << total_b;
+  // The test must have power: a twentieth of the whole would show.
+  EXPECT_LT(std::sqrt(total_variance) / total_a, 0.05 / kBound);
 }
 
 class Estimators : public testing::TestWithParam<const char*> {
@@ -116,11 +129,12 @@ class Estimators : public testing::TestWithParam<const char*> {
 
 TEST_P(Estimators, LightTracingAndPathTracingAgree) {
   const SceneData scene = makeLampScene(material());
-  RenderSettings from_lights = makeSettings(32, 1, 1 << 16, {"caustic", "irradiance_caustic"});
-  RenderSettings from_eye = makeSettings(32, 192, 0, {"caustic", "irradiance_caustic"});
+  RenderSettings from_lights = makeSettings(16, 1, 1 << 14, {"irradiance_caustic"});
+  // A varnish returns 4 %: it takes more paths to see that well.
+  const bool weak = std::string(GetParam()) == "varnish";
+  RenderSettings from_eye = makeSettings(16, weak ? 1024 : 256, 0, {"irradiance_caustic"});
   from_eye.params.set("caustic-estimator", "path");
-  for (const char* layer : {"caustic", "irradiance_caustic"})
-    expectAgreement(blockMeans(scene, from_lights, layer), blockMeans(scene, from_eye, layer));
+  expectAgreement(blockMeans(scene, from_lights, "irradiance_caustic"), blockMeans(scene, from_eye, "irradiance_caustic"));
 }
 
 INSTANTIATE_TEST_SUITE_P(Materials, Estimators,
@@ -132,8 +146,8 @@ TEST(Reference, IndirectLightAgreesBetweenEstimators) {
   const SceneData scene = makeLampScene(makeMetal(vec3(0.9F)));
   SceneData with_wall = scene;
   addObject(with_wall, makeRectangle("wall", dvec3(-3, 2, 0), dvec3(0, 2, 0), dvec3(0, 0, 3)), makeDiffuse(vec3(0.8F)));
-  RenderSettings from_lights = makeSettings(32, 64, 1 << 16, {"indirect"});
-  RenderSettings from_eye = makeSettings(32, 160, 0, {"indirect"});
+  RenderSettings from_lights = makeSettings(16, 64, 1 << 14, {"indirect"});
+  RenderSettings from_eye = makeSettings(16, 128, 0, {"indirect"});
   from_eye.params.set("caustic-estimator", "path");
   expectAgreement(blockMeans(with_wall, from_lights, "indirect"), blockMeans(with_wall, from_eye, "indirect"));
 }
@@ -141,9 +155,9 @@ TEST(Reference, IndirectLightAgreesBetweenEstimators) {
 TEST(Reference, SunWithASizeAgreesBetweenEstimators) {
   SceneData scene = test::makeBallScene(makeMetal(vec3(0.9F)), 256);
   scene.lights.push_back(test::makeSun(vec3(-0.4F, -1, -0.2F), vec3(3.0F), 60.0F));
-  RenderSettings from_eye = makeSettings(32, 256, 0, {"caustic"});
+  RenderSettings from_eye = makeSettings(16, 256, 0, {"caustic"});
   from_eye.params.set("caustic-estimator", "path");
-  expectAgreement(blockMeans(scene, makeSettings(32, 1, 1 << 16, {"caustic"}), "caustic"), blockMeans(scene, from_eye, "caustic"));
+  expectAgreement(blockMeans(scene, makeSettings(16, 1, 1 << 14, {"caustic"}), "caustic"), blockMeans(scene, from_eye, "caustic"));
 }
 
 TEST(Reference, EnvironmentAgreesBetweenEstimators) {
@@ -151,9 +165,9 @@ TEST(Reference, EnvironmentAgreesBetweenEstimators) {
   auto image = std::make_shared<Image>(16, 8, 3, 0.5F);
   for (int x = 2; x < 7; ++x) image->setRgb(x, 2, vec3(20.0F, 10.0F, 5.0F));
   scene.environment = Environment{image, 20.0F, 1.0F, "test"};
-  RenderSettings from_eye = makeSettings(32, 256, 0, {"caustic"});
+  RenderSettings from_eye = makeSettings(16, 256, 0, {"caustic"});
   from_eye.params.set("caustic-estimator", "path");
-  expectAgreement(blockMeans(scene, makeSettings(32, 1, 1 << 17, {"caustic"}), "caustic"), blockMeans(scene, from_eye, "caustic"));
+  expectAgreement(blockMeans(scene, makeSettings(16, 1, 1 << 15, {"caustic"}), "caustic"), blockMeans(scene, from_eye, "caustic"));
 }
 
 TEST(Reference, LayersSumToBeauty) {

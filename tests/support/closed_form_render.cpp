@@ -1,0 +1,95 @@
+#include "support/closed_form_render.h"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+namespace nephroid::closed_form {
+
+Camera PlaneView::camera() const {
+  Camera camera;
+  camera.name = "closed form";
+  camera.eye = centre + static_cast<float>(distance) * normal;
+  camera.forward = -normal;
+  camera.up = up;
+  camera.ortho_height = static_cast<float>(height());
+  return camera;
+}
+
+dvec3 PlanePicture::flux() const {
+  dvec3 sum(0.0);
+  for (int y = 0; y < irradiance.height; ++y)
+    for (int x = 0; x < irradiance.width; ++x) sum += dvec3(irradiance.rgb(x, y));
+  return sum * (view.pixelSize() * view.pixelSize());
+}
+
+std::vector<double> PlanePicture::columnMeans(int channel) const {
+  std::vector<double> means(static_cast<std::size_t>(irradiance.width), 0.0);
+  for (int y = 0; y < irradiance.height; ++y)
+    for (int x = 0; x < irradiance.width; ++x)
+      means[static_cast<std::size_t>(x)] += static_cast<double>(irradiance.at(x, y)[channel]) / irradiance.height;
+  return means;
+}
+
+std::vector<double> PlanePicture::rowMeans(int channel) const {
+  std::vector<double> means(static_cast<std::size_t>(irradiance.height), 0.0);
+  for (int y = 0; y < irradiance.height; ++y)
+    for (int x = 0; x < irradiance.width; ++x)
+      means[static_cast<std::size_t>(y)] += static_cast<double>(irradiance.at(x, y)[channel]) / irradiance.width;
+  return means;
+}
+
+std::vector<double> PlanePicture::ringMeans(double radius, std::size_t rings, int channel) const {
+  std::vector<double> sums(rings, 0.0), counts(rings, 0.0);
+  for (int y = 0; y < irradiance.height; ++y) {
+    for (int x = 0; x < irradiance.width; ++x) {
+      const double dx = x + 0.5 - 0.5 * irradiance.width, dy = y + 0.5 - 0.5 * irradiance.height;
+      const double ring = std::hypot(dx, dy) * view.pixelSize() / radius * static_cast<double>(rings);
+      if (ring >= static_cast<double>(rings)) continue;
+      sums[static_cast<std::size_t>(ring)] += static_cast<double>(irradiance.at(x, y)[channel]);
+      counts[static_cast<std::size_t>(ring)] += 1.0;
+    }
+  }
+  for (std::size_t i = 0; i < rings; ++i) sums[i] /= std::max(counts[i], 1.0);
+  return sums;
+}
+
+RenderResult renderLayers(const SceneData& scene, const Camera& camera, RenderSettings settings) {
+  const Technique& technique = findTechnique("reference");
+  if (settings.params.specs().empty()) settings.params = ParamSet(technique.params);
+  return technique.render(scene, camera, settings, nullptr, nullptr);
+}
+
+PlanePicture renderPlane(const SceneData& scene, const PlaneView& view, std::uint64_t photons, std::uint64_t seed,
+                         const std::vector<std::string>& settings) {
+  RenderSettings render;
+  render.width = view.columns, render.height = view.rows;
+  render.layers = {"irradiance_caustic"};
+  render.photons = photons;
+  render.seed = seed;
+  render.params = ParamSet(findTechnique("reference").params);
+  for (const std::string& setting : settings) {
+    const std::size_t mark = setting.find('=');
+    render.params.set(setting.substr(0, mark), setting.substr(mark + 1));
+  }
+  RenderResult result = renderLayers(scene, view.camera(), std::move(render));
+  return {view, *result.image.find("irradiance_caustic"), std::move(result.ledgers), std::move(result.stats)};
+}
+
+double worstResidual(const std::vector<Ledger>& ledgers) {
+  double worst = ledgers.empty() ? 1.0 : 0.0;
+  for (const Ledger& ledger : ledgers) worst = std::max(worst, std::abs(ledger.residual()));
+  return worst;
+}
+
+Light makeSun(vec3 dir, float angle_deg) {
+  Light sun;
+  sun.name = "sun";
+  sun.kind = LightKind::kSun;
+  sun.direction = dir;
+  sun.intensity = vec3(1.0F);
+  sun.angle_deg = angle_deg;
+  return sun;
+}
+
+}  // namespace nephroid::closed_form
