@@ -1,4 +1,6 @@
 # Everything that Nephroid stands on, all from Debian; see docs/architecture.md for what each is for.
+# Under add_subdirectory the project above links them too, and would not see targets of this folder only.
+set(CMAKE_FIND_PACKAGE_TARGETS_GLOBAL ON)
 find_package(embree 4 QUIET)
 if(NOT embree_FOUND)
   find_package(embree 3.13 REQUIRED)
@@ -15,7 +17,7 @@ find_package(TinyGLTF REQUIRED)
 find_package(nlohmann_json REQUIRED)
 find_package(fmt REQUIRED)
 find_package(PkgConfig REQUIRED)
-pkg_check_modules(WebP REQUIRED IMPORTED_TARGET libwebp)
+pkg_check_modules(WebP REQUIRED IMPORTED_TARGET GLOBAL libwebp)
 find_path(STB_INCLUDE_DIR stb_image.h PATH_SUFFIXES stb REQUIRED)
 
 add_library(nephroid_dependencies INTERFACE)

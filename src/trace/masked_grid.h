@@ -9,6 +9,7 @@
 
 namespace nephroid {
 
+/// At most 65 535 cells wide and high.
 class MaskedGrid {
  public:
   MaskedGrid(int width, int height)
@@ -24,7 +25,7 @@ class MaskedGrid {
     row_begin_.assign(1, 0);
     for (int y = 0; y < height_; ++y) {
       for (int x = 0; x < width_; ++x)
-        if (isMarked(x, y)) cells_.push_back(static_cast<std::uint32_t>(x));
+        if (isMarked(x, y)) cells_.push_back({static_cast<std::uint16_t>(x), static_cast<std::uint16_t>(y)});
       row_begin_.push_back(static_cast<std::uint32_t>(cells_.size()));
     }
   }
@@ -38,19 +39,21 @@ class MaskedGrid {
     // Doubles: a float has too few bits to tell places within one of a million cells.
     const double along = static_cast<double>(u.y) * static_cast<double>(cells_.size());
     const auto target = std::min(static_cast<std::uint32_t>(along), static_cast<std::uint32_t>(cells_.size() - 1));
-    const auto next = std::upper_bound(row_begin_.begin(), row_begin_.end(), target);
-    const auto row = static_cast<std::uint32_t>(next - row_begin_.begin()) - 1;
-    const std::uint32_t begin = row_begin_[row], count = *next - begin;
+    const std::uint32_t row = cells_[target].y;
+    const std::uint32_t begin = row_begin_[row], count = row_begin_[row + 1] - begin;
     const double in_row = static_cast<double>(u.x) * count;
     const std::uint32_t cell = std::min(static_cast<std::uint32_t>(in_row), count - 1);
-    return {static_cast<float>((cells_[begin + cell] + (in_row - cell)) / width_),
+    return {static_cast<float>((cells_[begin + cell].x + (in_row - cell)) / width_),
             static_cast<float>((row + (along - begin) / count) / height_)};
   }
 
  private:
   int width_, height_;
   std::vector<std::uint8_t> marked_;
-  std::vector<std::uint32_t> cells_;      ///< column of each marked cell, row by row
+  struct Cell {
+    std::uint16_t x, y;
+  };
+  std::vector<Cell> cells_;               ///< the marked ones, row by row
   std::vector<std::uint32_t> row_begin_;  ///< height + 1 offsets into cells_
 };
 

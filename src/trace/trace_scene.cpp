@@ -34,11 +34,31 @@ void checkEmbree(RTCDevice device, const char* what) {
   throw InternalError(fmt::format("Embree error {} while {}", static_cast<int>(code), what));
 }
 
-vec3 interpolate(const vec3* values, const uvec3& triangle, float u, float v) {
-  return (1.0F - u - v) * values[triangle.x] + u * values[triangle.y] + v * values[triangle.z];
+/// The triangles of a mesh, placed by `placed` (the identity for meshes that are instanced).
+std::vector<PackedTriangle> packTriangles(const Mesh& mesh, const mat4& placed) {
+  const mat3 normal_from_object = glm::transpose(glm::inverse(mat3(placed)));
+  std::vector<PackedTriangle> packed(mesh.triangles.size());
+  for (std::size_t t = 0; t < packed.size(); ++t) {
+    for (int k = 0; k < 3; ++k) {
+      const std::uint32_t vertex = mesh.triangles[t][k];
+      packed[t].corners[k] = transformPoint(placed, mesh.positions[vertex]);
+      packed[t].normals[k] = mesh.normals.empty() ? 0 : PackedTriangle::packNormal(normalize(normal_from_object * mesh.normals[vertex]));
+    }
+  }
+  return packed;
 }
 
 }  // namespace
+
+std::uint64_t PackedTriangle::packNormal(vec3 n) {
+  if (!isFinite(n)) n = vec3(0, 0, 1);
+  std::uint64_t packed = 0;
+  for (int k = 0; k < 3; ++k) {
+    const auto steps = static_cast<std::int64_t>(std::lround(static_cast<double>(n[k]) * ((1 << 20) - 1)));
+    packed |= static_cast<std::uint64_t>(steps + (1 << 20)) << (21 * k);
+  }
+  return packed;
+}
 
 TraceScene::TraceScene(const SceneData& scene) : scene_(scene) {
   buildPlaced();
@@ -52,6 +72,7 @@ void TraceScene::buildPlaced() {
   for (const Instance& instance : scene_.instances) ++uses[instance.mesh];
   std::map<std::pair<std::uint32_t, std::uint32_t>, std::uint32_t> solids;
   placed_.resize(scene_.instances.size());
+  packed_.resize(scene_.meshes.size());
   for (std::size_t i = 0; i < placed_.size(); ++i) {
     const Instance& instance = scene_.instances[i];
     const Mesh& mesh = scene_.meshes[instance.mesh];
@@ -66,32 +87,28 @@ void TraceScene::buildPlaced() {
     placed.baked = uses[instance.mesh] == 1;
     placed.solid = solids.try_emplace({instance.object, mesh.material}, static_cast<std::uint32_t>(solids.size()))
                        .first->second;
-    placed.positions = mesh.positions.data();
-    placed.normals = mesh.normals.empty() ? nullptr : mesh.normals.data();
+    placed.smooth = !mesh.normals.empty();
+    if (packed_[instance.mesh].empty())
+      packed_[instance.mesh] = packTriangles(mesh, placed.baked ? instance.world_from_object : mat4(1.0F));
+    placed.packed = packed_[instance.mesh].data();
     for (const vec3& p : mesh.positions) bounds_.add(transformPoint(instance.world_from_object, p));
-    if (!placed.baked) continue;
-    placed.world_positions.reserve(mesh.positions.size());
-    for (const vec3& p : mesh.positions)
-      placed.world_positions.push_back(transformPoint(instance.world_from_object, p));
-    placed.positions = placed.world_positions.data();
-    if (!placed.normals) continue;
-    placed.world_normals.reserve(mesh.normals.size());
-    for (const vec3& n : mesh.normals) placed.world_normals.push_back(normalize(placed.normal_from_object * n));
-    placed.normals = placed.world_normals.data();
   }
 }
 
-RTCGeometry TraceScene::makeTriangles(const Placed& placed, std::span<const vec3> positions) {
+RTCGeometry TraceScene::makeTriangles(const Placed& placed) {
+  const Mesh& mesh = *placed.mesh;
   RTCGeometry geometry = rtcNewGeometry(device_.get(), RTC_GEOMETRY_TYPE_TRIANGLE);
   // Embree reads 16 bytes at each vertex, so the last of a shared 12-byte array would be read past its end: copy.
   auto* vertices = static_cast<vec3*>(rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3,
-                                                              sizeof(vec3), std::max<std::size_t>(positions.size(), 1)));
+                                                              sizeof(vec3), std::max<std::size_t>(mesh.positions.size(), 1)));
   auto* indices =
       static_cast<uvec3*>(rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3, sizeof(uvec3),
                                                   std::max<std::size_t>(placed.triangles.size(), 1)));
   if (!vertices || !indices) throw ResourceError("out of memory while copying triangles to the acceleration structure");
-  std::copy(positions.begin(), positions.end(), vertices);
+  for (std::size_t i = 0; i < mesh.positions.size(); ++i)
+    vertices[i] = placed.baked ? transformPoint(placed.world_from_object, mesh.positions[i]) : mesh.positions[i];
   std::copy(placed.triangles.begin(), placed.triangles.end(), indices);
+  if (mesh.positions.empty()) vertices[0] = vec3(0.0F);
   if (placed.triangles.empty()) indices[0] = uvec3(0);
   rtcCommitGeometry(geometry);
   return geometry;
@@ -110,14 +127,14 @@ void TraceScene::buildEmbree() {
     const Placed& placed = placed_[i];
     EmbreeGeometry geometry;
     if (placed.baked) {
-      geometry = EmbreeGeometry(makeTriangles(placed, placed.world_positions));
+      geometry = EmbreeGeometry(makeTriangles(placed));
     } else {
       EmbreeScene& shared = mesh_scenes_[scene_.instances[i].mesh];
       if (!shared.get()) {
         shared = EmbreeScene(rtcNewScene(device_.get()));
         rtcSetSceneFlags(shared.get(), RTC_SCENE_FLAG_ROBUST);
         rtcSetSceneBuildQuality(shared.get(), RTC_BUILD_QUALITY_HIGH);
-        const EmbreeGeometry triangles(makeTriangles(placed, placed.mesh->positions));
+        const EmbreeGeometry triangles(makeTriangles(placed));
         rtcAttachGeometry(shared.get(), triangles.get());
         rtcCommitScene(shared.get());
       }
@@ -135,6 +152,8 @@ void TraceScene::buildEmbree() {
 }
 
 bool TraceScene::intersect(const Ray& ray, RayHit& hit, bool coherent) const {
+  if (recorder_) [[unlikely]]
+    recorder_->push_back(ray);
   RTCRayHit query;
   query.ray.org_x = ray.origin.x, query.ray.org_y = ray.origin.y, query.ray.org_z = ray.origin.z;
   query.ray.dir_x = ray.dir.x, query.ray.dir_y = ray.dir.y, query.ray.dir_z = ray.dir.z;
@@ -154,6 +173,8 @@ bool TraceScene::intersect(const Ray& ray, RayHit& hit, bool coherent) const {
 }
 
 bool TraceScene::occluded(const Ray& ray) const {
+  if (recorder_) [[unlikely]]
+    recorder_->push_back(ray);
   RTCRay query;
   query.org_x = ray.origin.x, query.org_y = ray.origin.y, query.org_z = ray.origin.z;
   query.dir_x = ray.dir.x, query.dir_y = ray.dir.y, query.dir_z = ray.dir.z;
@@ -164,8 +185,8 @@ bool TraceScene::occluded(const Ray& ray) const {
 
 SurfacePoint TraceScene::surfaceAt(const Ray& ray, const RayHit& hit) const {
   const Placed& placed = placed_[hit.instance];
-  const uvec3& triangle = placed.triangles[hit.triangle];
-  const vec3 a = placed.positions[triangle.x], b = placed.positions[triangle.y], c = placed.positions[triangle.z];
+  const PackedTriangle& packed = placed.packed[hit.triangle];
+  const vec3 a = packed.corners[0], b = packed.corners[1], c = packed.corners[2];
   SurfacePoint point;
   point.instance = hit.instance, point.triangle = hit.triangle, point.u = hit.u, point.v = hit.v;
   vec3 normal = cross(b - a, c - a);
@@ -186,8 +207,10 @@ SurfacePoint TraceScene::surfaceAt(const Ray& ray, const RayHit& hit) const {
   // Only the error across the surface matters: along it, the point is still on the surface.
   point.position_error = kPositionErrorScale * dot(glm::abs(point.normal_geometric), magnitude);
   point.normal_shading = point.normal_geometric;
-  if (placed.normals) {
-    vec3 interpolated = interpolate(placed.normals, triangle, hit.u, hit.v);
+  if (placed.smooth) {
+    vec3 interpolated = (1.0F - hit.u - hit.v) * PackedTriangle::unpackNormal(packed.normals[0]) +
+                        hit.u * PackedTriangle::unpackNormal(packed.normals[1]) +
+                        hit.v * PackedTriangle::unpackNormal(packed.normals[2]);
     if (!placed.baked) interpolated = placed.normal_from_object * interpolated;
     const float squared = dot(interpolated, interpolated);
     if (squared > 0.0F) interpolated *= 1.0F / std::sqrt(squared);
@@ -214,9 +237,10 @@ vec3 TraceScene::perturbNormal(const Placed& placed, const SurfacePoint& point, 
     const auto& uvs = mesh.texcoords[reference.texcoord];
     if (uvs.empty()) return normal;
     vec3 corners[3];
-    for (int k = 0; k < 3; ++k)
-      corners[k] = placed.baked ? placed.positions[triangle[k]]
-                                : transformPoint(placed.world_from_object, placed.positions[triangle[k]]);
+    for (int k = 0; k < 3; ++k) {
+      corners[k] = placed.packed[point.triangle].corners[k];
+      if (!placed.baked) corners[k] = transformPoint(placed.world_from_object, corners[k]);
+    }
     const vec2 du = uvs[triangle.y] - uvs[triangle.x], dv = uvs[triangle.z] - uvs[triangle.x];
     const float determinant = du.x * dv.y - du.y * dv.x;
     if (determinant == 0.0F) return normal;
@@ -254,9 +278,10 @@ vec4 TraceScene::colorAt(std::uint32_t instance, std::uint32_t triangle, float u
 
 void TraceScene::triangleCorners(std::uint32_t instance, std::uint32_t triangle, vec3 corners[3]) const {
   const Placed& placed = placed_[instance];
-  const uvec3& t = placed.triangles[triangle];
-  for (int k = 0; k < 3; ++k)
-    corners[k] = placed.baked ? placed.positions[t[k]] : transformPoint(placed.world_from_object, placed.positions[t[k]]);
+  for (int k = 0; k < 3; ++k) {
+    corners[k] = placed.packed[triangle].corners[k];
+    if (!placed.baked) corners[k] = transformPoint(placed.world_from_object, corners[k]);
+  }
   if (placed.mirrored) std::swap(corners[1], corners[2]);
 }
 

@@ -8,7 +8,7 @@ namespace {
 // 512 facets around: a facet is 0.012 radii wide, and its sagitta 2e-5 radii.
 constexpr int kSegments = 512;
 constexpr std::uint64_t kPhotons = std::uint64_t{1} << 21;
-constexpr std::size_t kBins = 128;
+constexpr std::size_t kBins = 64;
 
 /// Relative L1 of the radial profile.
 double compareProfile(const BallCase& c) {

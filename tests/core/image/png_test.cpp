@@ -1,9 +1,11 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <png.h>
+#include <zlib.h>
 
-#include <cstring>
+#include <algorithm>
 #include <filesystem>
+#include <iterator>
 #include <limits>
 
 #include "core/file.h"
@@ -44,6 +46,8 @@ std::vector<std::byte> encodeRaw(int width, int height, int bit_depth, int colou
   png_set_write_fn(png, &bytes, append, [](png_structp) {});
   png_set_IHDR(png, info, static_cast<png_uint_32>(width), static_cast<png_uint_32>(height), bit_depth, colour_type,
                interlace, PNG_COMPRESSION_TYPE_DEFAULT, PNG_FILTER_TYPE_DEFAULT);
+  // Stored, not packed: what must be read for the last pixel ends with it.
+  png_set_compression_level(png, 0);
   if (transparent != nullptr) png_set_tRNS(png, info, nullptr, 0, transparent);
   png_write_info(png, info);
   const std::size_t row_bytes = png_get_rowbytes(png, info);
@@ -145,20 +149,52 @@ TEST(Png, EveryFlippedByteOfThePixelsIsRefused) {
   }
 }
 
+void append(std::vector<std::byte>& target, std::span<const std::byte> bytes) {
+  std::ranges::copy(bytes, std::back_inserter(target));
+}
+
+/// Length, name and data (given), check sum.
+std::vector<std::byte> makeChunk(std::span<const std::byte> name_and_data) {
+  const auto* data = reinterpret_cast<const Bytef*>(name_and_data.data());
+  const auto check_sum = static_cast<std::uint32_t>(crc32(0, data, static_cast<uInt>(name_and_data.size())));
+  const auto length = static_cast<std::uint32_t>(name_and_data.size() - 4);
+  std::vector<std::byte> chunk;
+  for (unsigned shift = 32; shift > 0;) chunk.push_back(static_cast<std::byte>(length >> (shift -= 8U)));
+  append(chunk, name_and_data);
+  for (unsigned shift = 32; shift > 0;) chunk.push_back(static_cast<std::byte>(check_sum >> (shift -= 8U)));
+  return chunk;
+}
+
+/// Splits the one IDAT chunk of a file so that the check sum of the pixels (its last four bytes) is alone in a second.
+std::vector<std::byte> splitCheckSum(std::span<const std::byte> bytes, std::byte flip) {
+  const std::string_view text(reinterpret_cast<const char*>(bytes.data()), bytes.size());
+  const std::size_t name = text.find("IDAT"), data_end = text.find("IEND") - 8;
+  std::vector<std::byte> second = makeBytes("IDAT");
+  append(second, bytes.subspan(data_end - 4, 4));
+  second.back() ^= flip;
+  std::vector<std::byte> result;
+  append(result, bytes.first(name - 4));
+  append(result, makeChunk(bytes.subspan(name, data_end - 4 - name)));
+  append(result, makeChunk(second));
+  append(result, bytes.subspan(data_end + 4));
+  return result;
+}
+
+TEST(Png, WrongCheckSumBehindTheLastPixelIsRefused) {
+  // There libpng only warns: it has all the pixels already.
+  const std::vector<std::byte> bytes = encodeRaw(64, 64, 8, PNG_COLOR_TYPE_GRAY, std::vector<std::uint8_t>(64 * 64, 7));
+  EXPECT_EQ(decodePixels(splitCheckSum(bytes, std::byte{0})), decodePixels(bytes));
+  EXPECT_THAT(getRefusal(splitCheckSum(bytes, std::byte{1})),
+              HasSubstr("damaged PNG image: IDAT: incorrect data check"));
+}
+
 TEST(Png, HugeSizeInASmallFileIsRefusedAtOnce) {
   std::vector<std::byte> bytes = encode(makeGradient(4, 4));
   // 16384 x 16384 is allowed, but not from a hundred bytes. (The check sum of the header follows its 13 bytes.)
   bytes[16 + 2] = std::byte{0x40}, bytes[16 + 3] = std::byte{0};
   bytes[20 + 2] = std::byte{0x40}, bytes[20 + 3] = std::byte{0};
-  std::vector<std::uint8_t> header(17);
-  std::memcpy(header.data(), bytes.data() + 12, header.size());
-  std::uint32_t crc = ~0U;  // CRC-32 of the PNG specification, annex D, bit by bit
-  for (const std::uint8_t byte : header) {
-    crc ^= byte;
-    for (int i = 0; i < 8; ++i) crc = (crc & 1U) != 0U ? 0xedb88320U ^ (crc >> 1U) : crc >> 1U;
-  }
-  crc = ~crc;
-  for (unsigned i = 0; i < 4; ++i) bytes[29 + i] = static_cast<std::byte>(crc >> (24U - 8U * i));
+  const std::vector<std::byte> header = makeChunk(std::span(bytes).subspan(12, 4 + 13));
+  std::ranges::copy(header, bytes.begin() + 8);
   EXPECT_THAT(getRefusal(bytes), HasSubstr("the file ends too early for its width and height"));
 }
 

@@ -1,0 +1,48 @@
+#include "closed_form/blur.h"
+
+#include <gtest/gtest.h>
+
+namespace nephroid::closed_form {
+namespace {
+
+// About half of the photons land in the view: 2^21, some 6 000 in a column of full light, each with an error of 1.3 %.
+constexpr std::uint64_t kPhotons = std::uint64_t{1} << 22;
+
+/// Sums neighbours, so that single photons do not decide where a level is crossed.
+std::vector<double> smooth(const std::vector<double>& values, std::size_t count) {
+  std::vector<double> means(values.size() / count, 0.0);
+  for (std::size_t i = 0; i < means.size() * count; ++i) means[i / count] += values[i] / static_cast<double>(count);
+  return means;
+}
+
+class FiniteSun : public ::testing::TestWithParam<double> {};
+
+TEST_P(FiniteSun, BlursAnEdgeByTheDiscsEdgeSpreadToTwoPercent) {
+  const BlurCase c{.ior = GetParam()};
+  const PlanePicture picture = renderPlane(makeBlurScene(c), blurView(c), kPhotons);
+  const std::vector<double> measured = picture.columnMeans(), predicted = blurIrradiance(c, 512);
+  const double error = relativeL1(measured, predicted);
+  // Width from 10 to 90 % of the plateau, over bins of 8 pixels.
+  const std::vector<double> edge = smooth(measured, 8);
+  const double plateau = 1.0 - fresnelReflectance(1.0, 1.0, c.ior);
+  const auto low = findCrossing(edge, 0.1 * plateau), high = findCrossing(edge, 0.9 * plateau);
+  ASSERT_TRUE(low && high);
+  const double width = (*high - *low) * 8.0 * picture.view.pixelSize() / blurRadius(c);
+  RecordProperty("relative_l1", fmt::format("{:.6f}", error));
+  RecordProperty("width_error", fmt::format("{:.6f}", width / edgeWidth() - 1.0));
+  EXPECT_LE(error, 0.02);
+  EXPECT_NEAR(width / edgeWidth(), 1.0, 0.02);
+  EXPECT_LE(worstResidual(picture.ledgers), 1e-5);
+}
+INSTANTIATE_TEST_SUITE_P(Indices, FiniteSun, ::testing::Values(1.0, 1.33));
+
+TEST(BlurFormula, IsAnEdgeSpreadFunction) {
+  EXPECT_EQ(edgeSpread(-1.0), 0.0);
+  EXPECT_DOUBLE_EQ(edgeSpread(1.0), 1.0);
+  EXPECT_DOUBLE_EQ(edgeSpread(0.3) + edgeSpread(-0.3), 1.0);
+  // Its slope is the disc's chord over its area: 2√(1 − u²)/π.
+  EXPECT_NEAR((edgeSpread(0.6 + 1e-6) - edgeSpread(0.6 - 1e-6)) / 2e-6, 2.0 * 0.8 / kPiD, 1e-6);
+}
+
+}  // namespace
+}  // namespace nephroid::closed_form
