@@ -8,12 +8,12 @@ endif()
 find_package(TBB REQUIRED)
 find_package(glm REQUIRED)
 find_package(OpenEXR REQUIRED)
+find_package(ZLIB REQUIRED)
 find_package(PNG REQUIRED)
 find_package(JPEG REQUIRED)
 find_package(assimp REQUIRED)
 find_package(draco REQUIRED)
 find_package(meshoptimizer REQUIRED)
-find_package(TinyGLTF REQUIRED)
 find_package(nlohmann_json REQUIRED)
 find_package(fmt REQUIRED)
 find_package(PkgConfig REQUIRED)
@@ -23,8 +23,8 @@ find_path(STB_INCLUDE_DIR stb_image.h PATH_SUFFIXES stb REQUIRED)
 add_library(nephroid_dependencies INTERFACE)
 target_link_libraries(
   nephroid_dependencies
-  INTERFACE embree TBB::tbb glm::glm OpenEXR::OpenEXR PNG::PNG JPEG::JPEG assimp::assimp draco::draco
-            meshoptimizer::meshoptimizer TinyGLTF::TinyGLTF nlohmann_json::nlohmann_json fmt::fmt PkgConfig::WebP)
+  INTERFACE embree TBB::tbb glm::glm OpenEXR::OpenEXR ZLIB::ZLIB PNG::PNG JPEG::JPEG assimp::assimp draco::draco
+            meshoptimizer::meshoptimizer nlohmann_json::nlohmann_json fmt::fmt PkgConfig::WebP)
 # As system headers: their warnings are not ours. Only for building: an installed library needs its dependencies to link.
 target_include_directories(nephroid_dependencies SYSTEM INTERFACE $<BUILD_INTERFACE:${STB_INCLUDE_DIR}>)
 target_compile_definitions(nephroid_dependencies

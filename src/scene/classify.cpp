@@ -4,11 +4,10 @@
 
 #include <algorithm>
 
+#include "scene/texture.h"
+
 namespace nephroid {
 namespace {
-
-/// Below this width a lobe is a mirror in single precision; a pane that smooth lets light straight through.
-constexpr float kSmoothAlpha = 5e-4F;
 
 /// Normal reflectance of a metal: of its complex index, or its base colour.
 vec3 metalReflectance(const Material& material) {
@@ -23,13 +22,6 @@ vec3 dielectricReflectance(const Material& material) {
   float reflectance = root * root;
   if (material.transmits() && !material.isSolidDielectric()) reflectance = 2.0F * reflectance / (1.0F + reflectance);
   return glm::clamp(material.specular_factor * material.specular_color, 0.0F, 1.0F) * reflectance;
-}
-
-/// Weight of the dielectric lobe: 1 up to the default bound of specular lobes, falling to 0 at alpha 1 (a fully rough
-/// dielectric is exactly Lambertian), but 1 for what transmits.
-float dielectricWeight(float alpha, float transmission) {
-  const float faded = std::clamp((1.0F - alpha) / (1.0F - kDefaultSpecularAlpha), 0.0F, 1.0F);
-  return transmission + (1.0F - transmission) * faded;
 }
 
 std::string describe(const Material& material, const Classification& c, float specular_alpha) {
@@ -48,24 +40,23 @@ std::string describe(const Material& material, const Classification& c, float sp
   return text;
 }
 
-}  // namespace
-
-Classification classify(const Material& material, float specular_alpha) {
+/// The verdict without the sentence about it.
+Classification judge(const Material& material, float specular_alpha) {
   Classification c;
   const float roughness = std::clamp(material.roughness, 0.0F, 1.0F);
   c.alpha = roughness * roughness;
-  const bool specular = c.alpha < specular_alpha || c.alpha < kSmoothAlpha;
+  const bool specular = c.alpha < specular_alpha || c.alpha < kDeltaAlpha;
   const float metallic = std::clamp(material.metallic, 0.0F, 1.0F), dielectric = 1.0F - metallic;
   const float transmission = std::clamp(material.transmission, 0.0F, 1.0F);
   const vec3 base = glm::clamp(vec3(material.base_color), 0.0F, 1.0F);
-  const vec3 weighted = dielectricWeight(c.alpha, transmission) * dielectricReflectance(material);
+  const vec3 weighted = glossOf(c.alpha, transmission) * dielectricReflectance(material);
 
   const float reflected =
       luminance(metallic * glm::clamp(metalReflectance(material), 0.0F, 1.0F) + dielectric * weighted);
   const float transmitted = luminance(dielectric * transmission * base * (1.0F - dielectricReflectance(material)));
   const float scattered = luminance(dielectric * (1.0F - transmission) * base * (1.0F - weighted));
   // Light goes straight through a smooth pane: that is no event, neither specular nor diffuse.
-  const bool passes = !material.isSolidDielectric() && c.alpha < kSmoothAlpha;
+  const bool passes = !material.isSolidDielectric() && c.alpha < kDeltaAlpha;
 
   c.specular_albedo = specular ? reflected : 0.0F;
   c.specular_transmission = specular && !passes ? transmitted : 0.0F;
@@ -73,8 +64,70 @@ Classification classify(const Material& material, float specular_alpha) {
   c.is_generator = c.specular_albedo > kGeneratorAlbedo || c.specular_transmission > 0.0F;
   c.is_weak_generator = !c.is_generator && c.specular_albedo > 0.0F;
   c.is_receiver = c.diffuse_albedo > 0.0F;
+  return c;
+}
+
+bool isTextured(const Material& m) {
+  return m.metallic_roughness_texture.valid() || m.transmission_texture.valid() || m.specular_texture.valid() ||
+         m.specular_color_texture.valid() || m.base_color_texture.valid();
+}
+
+/// The material as it is at one place of its textures.
+Material resolveAt(const SceneData& scene, const Material& material, vec2 uv) {
+  const auto texel = [&](const TextureRef& reference, bool srgb) {
+    return reference.valid() ? sampleTexture(scene.images[reference.image], reference, uv, srgb) : vec4(1.0F);
+  };
+  Material m = material;
+  m.base_color *= texel(material.base_color_texture, true);
+  const vec4 metallic_roughness = texel(material.metallic_roughness_texture, false);
+  m.roughness *= metallic_roughness.y;
+  m.metallic *= metallic_roughness.z;
+  m.transmission *= texel(material.transmission_texture, false).x;
+  m.specular_factor *= texel(material.specular_texture, false).w;
+  m.specular_color *= vec3(texel(material.specular_color_texture, true));
+  return m;
+}
+
+}  // namespace
+
+float glossOf(float alpha, float transmission) {
+  const float faded = std::clamp((1.0F - alpha) / (1.0F - kDefaultSpecularAlpha), 0.0F, 1.0F);
+  return transmission + (1.0F - transmission) * faded;
+}
+
+Classification classify(const Material& material, float specular_alpha) {
+  Classification c = judge(material, specular_alpha);
   c.reason = describe(material, c, specular_alpha);
   return c;
+}
+
+Classification classify(const SceneData& scene, const Material& material, float specular_alpha) {
+  if (!isTextured(material)) return classify(material, specular_alpha);
+  // Fine enough to find any part that is seen as a part, coarse enough to cost nothing.
+  constexpr int kGrid = 64;
+  Classification most;
+  Material most_at;
+  float diffuse_albedo = 0.0F, best = -1.0F;
+  bool generator = false, weak = false, receiver = false;
+  for (int y = 0; y < kGrid; ++y) {
+    for (int x = 0; x < kGrid; ++x) {
+      const vec2 uv((static_cast<float>(x) + 0.5F) / kGrid, (static_cast<float>(y) + 0.5F) / kGrid);
+      const Material at = resolveAt(scene, material, uv);
+      const Classification c = judge(at, specular_alpha);
+      generator = generator || c.is_generator;
+      weak = weak || c.is_weak_generator;
+      receiver = receiver || c.is_receiver;
+      diffuse_albedo = std::max(diffuse_albedo, c.diffuse_albedo);
+      const float specular = c.specular_albedo + c.specular_transmission;
+      if (specular > best) best = specular, most = c, most_at = at;
+    }
+  }
+  most.diffuse_albedo = diffuse_albedo;
+  most.is_generator = generator;
+  most.is_weak_generator = weak && !generator;
+  most.is_receiver = receiver;
+  most.reason = describe(most_at, most, specular_alpha) + " (textured)";
+  return most;
 }
 
 }  // namespace nephroid

@@ -18,7 +18,7 @@ bool hasLight(const SceneData& scene) {
 
 bool hasReceiver(const SceneData& scene) {
   return std::ranges::any_of(scene.instances,
-                             [&](const Instance& i) { return classify(scene.materialOf(i)).is_receiver; });
+                             [&](const Instance& i) { return classify(scene, scene.materialOf(i)).is_receiver; });
 }
 
 void addSun(SceneData& scene) {

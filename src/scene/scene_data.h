@@ -69,7 +69,10 @@ struct Material {
 
   bool transmits() const { return transmission > 0.0F; }
   /// Solid glass, water: light inside has another index and is absorbed. Thin-walled panes are not solid.
-  bool isSolidDielectric() const { return transmits() && thickness > 0.0F && metallic < 1.0F; }
+  /// A metallic texture may leave parts dielectric where its factor is 1.
+  bool isSolidDielectric() const {
+    return transmits() && thickness > 0.0F && (metallic < 1.0F || metallic_roughness_texture.valid());
+  }
   bool emits() const { return emission.x > 0.0F || emission.y > 0.0F || emission.z > 0.0F; }
   /// Absorption coefficient per channel, 1/m: −ln(attenuation_color) / attenuation_distance.
   vec3 sigmaA() const;
@@ -90,7 +93,8 @@ struct Mesh {
   Bounds bounds() const;
 };
 
-/// A mesh placed in the world.
+/// A mesh placed in the world. Where the determinant of `world_from_object` is negative the placement is mirrored:
+/// whoever transforms the triangles must then exchange two corners of each to keep normals pointing out of the solid.
 struct Instance {
   std::string name;       ///< the node's name
   std::uint32_t mesh = 0;

@@ -31,16 +31,19 @@ Bsdf::Bsdf(const SurfaceMaterial& material, const SurfacePoint& point, vec3 wo, 
   index_matched_ = material.is_solid && std::abs(ior_from_ - ior_to_) < kMatchedIndex * ior_from_;
 
   const float cos_o = std::max(wo_local_.z, 0.0F);
-  reflectance_ = reflectanceAt(cos_o);
-  transmittance_ = transmittanceAt(cos_o);
+  const float fresnel_o = fresnelAt(cos_o);
+  reflectance_ = reflectanceAt(cos_o, fresnel_o);
+  transmittance_ = transmittanceFor(fresnel_o);
   const float base_weight = (1.0F - material.metallic) * (1.0F - material.transmission);
   base_scale_ = vec3(0.0F);
   base_albedo_ = vec3(0.0F);
+  base_factor_o_ = vec3(0.0F);
   if (base_weight > 0.0F) {
     base_scale_ = base_weight * material.base;
     if (material.gloss > 0.0F)
       base_scale_ /= 1.0F - material.gloss * averageFresnel(ior_to_ / ior_from_) * material.specular_tint;
-    base_albedo_ = base_weight * material.base * baseFactor(cos_o);
+    base_factor_o_ = baseFactorFor(fresnel_o);
+    base_albedo_ = base_weight * material.base * base_factor_o_;
   }
   const float interface_weight = luminance(reflectance_ + transmittance_);
   const float base_luminance = luminance(base_albedo_);
@@ -48,7 +51,12 @@ Bsdf::Bsdf(const SurfaceMaterial& material, const SurfacePoint& point, vec3 wo, 
   interface_probability_ = sum > 0.0F ? interface_weight / sum : 0.0F;
 }
 
-vec3 Bsdf::reflectanceAt(float cos_theta) const {
+float Bsdf::fresnelAt(float cos_theta) const {
+  const bool wanted = material_.metallic < 1.0F && material_.gloss > 0.0F;
+  return wanted ? fresnelDielectric(cos_theta, ior_from_ / ior_to_) : 0.0F;
+}
+
+vec3 Bsdf::reflectanceAt(float cos_theta, float fresnel) const {
   const SurfaceMaterial& m = material_;
   vec3 reflectance(0.0F);
   if (m.metallic > 0.0F) {
@@ -57,26 +65,24 @@ vec3 Bsdf::reflectanceAt(float cos_theta) const {
                                                      : fresnelSchlick(cos_theta, m.base));
   }
   if (m.metallic < 1.0F && m.gloss > 0.0F) {
-    float r = fresnelDielectric(cos_theta, ior_from_ / ior_to_);
-    if (m.is_pane) r = fresnelThinPane(r);
+    const float r = m.is_pane ? fresnelThinPane(fresnel) : fresnel;
     reflectance += (1.0F - m.metallic) * m.gloss * r * m.specular_tint;
   }
   return reflectance;
 }
 
-vec3 Bsdf::transmittanceAt(float cos_theta) const {
+vec3 Bsdf::transmittanceFor(float fresnel) const {
   const SurfaceMaterial& m = material_;
   if (m.transmission == 0.0F || m.metallic == 1.0F) return vec3(0.0F);
-  float r = fresnelDielectric(cos_theta, ior_from_ / ior_to_);
-  if (m.is_pane) r = fresnelThinPane(r);
+  const float r = m.is_pane ? fresnelThinPane(fresnel) : fresnel;
   // Beyond the critical angle there is no direction to transmit into, whatever the tint.
   if (r >= 1.0F) return vec3(0.0F);
   return (1.0F - m.metallic) * m.transmission * m.base * (1.0F - r * m.specular_tint);
 }
 
-vec3 Bsdf::baseFactor(float cos_theta) const {
+vec3 Bsdf::baseFactorFor(float fresnel) const {
   if (material_.gloss == 0.0F) return vec3(1.0F);
-  return 1.0F - material_.gloss * fresnelDielectric(cos_theta, ior_from_ / ior_to_) * material_.specular_tint;
+  return 1.0F - material_.gloss * fresnel * material_.specular_tint;
 }
 
 float Bsdf::radianceScale(Transport transport) const {
@@ -104,7 +110,7 @@ BsdfValue Bsdf::evaluate(EventClass c, vec3 wi, Transport transport) const {
   }
   if (c == EventClass::kDiffuse && reflected) {
     const float cos_i = wi_local.z;
-    value.f += base_scale_ * baseFactor(cos_i) * baseFactor(std::max(wo_local_.z, 0.0F)) * (1.0F / kPi);
+    value.f += base_scale_ * baseFactorFor(fresnelAt(cos_i)) * base_factor_o_ * (1.0F / kPi);
     value.pdf += (1.0F - p_interface) * cos_i * (1.0F / kPi);
   }
   return value;
@@ -123,7 +129,8 @@ BsdfValue Bsdf::evaluateInterface(vec3 wi, bool reflected, Transport transport) 
   if (h.z < 0.0F) h = -h;
   const float wo_h = dot(wo_local_, h), wi_h = dot(wi, h);
   if (wo_h <= 0.0F) return value;
-  const vec3 r = reflectanceAt(wo_h), t = transmittanceAt(wo_h);
+  const float fresnel = fresnelAt(wo_h);
+  const vec3 r = reflectanceAt(wo_h, fresnel), t = transmittanceFor(fresnel);
   const float sum = luminance(r) + luminance(t);
   if (sum <= 0.0F) return value;
   const float p_reflect = luminance(r) / sum;
@@ -175,7 +182,7 @@ std::optional<BsdfSample> Bsdf::sampleBase(vec2 u) const {
   s.dir = frame_.toWorld(local);
   if (local.z <= 0.0F || !sameSide(s.dir)) return std::nullopt;
   s.pdf = local.z * (1.0F / kPi);
-  s.weight = base_scale_ * baseFactor(local.z) * baseFactor(std::max(wo_local_.z, 0.0F));
+  s.weight = base_scale_ * baseFactorFor(fresnelAt(local.z)) * base_factor_o_;
   return s;
 }
 
@@ -211,7 +218,8 @@ std::optional<BsdfSample> Bsdf::sampleInterface(vec2 u, float u_lobe, Transport 
   const vec3 h = sampleGgxVndf(wo_local_, material_.alpha, u);
   const float wo_h = dot(wo_local_, h);
   if (wo_h <= 0.0F) return std::nullopt;
-  const vec3 r = reflectanceAt(wo_h), t = transmittanceAt(wo_h);
+  const float fresnel = fresnelAt(wo_h);
+  const vec3 r = reflectanceAt(wo_h, fresnel), t = transmittanceFor(fresnel);
   const float sum = luminance(r) + luminance(t);
   if (sum <= 0.0F) return std::nullopt;
   const float p_reflect = luminance(r) / sum;

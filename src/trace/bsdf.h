@@ -1,17 +1,17 @@
 // How a surface scatters: one microfacet interface (mirror, metal, glass, varnish) over one diffuse base.
 //
-// Events follow DESIGN §2: the interface is S if it is smooth or alpha < specular_alpha, else D; the base is D; straight
-// transmission through a smooth pane is no event. The two classes are kept apart everywhere (sampled, evaluated and
-// weighted on their own), because a path's layer depends on the class.
+// Events follow DESIGN §2: the interface is S if it is smooth or alpha < specular_alpha, else D; the base is D;
+// straight transmission through a smooth pane is no event. The two classes are kept apart everywhere (sampled,
+// evaluated and weighted on their own), because a path's layer depends on the class.
 //
 //   interface, reflected     R(θ) = metallic·F_metal(θ) + (1 − metallic)·gloss·tint·F(θ)
 //   interface, transmitted   T(θ) = (1 − metallic)·transmission·baseColor·(1 − tint·F(θ))
 //   base                     f = (1 − metallic)(1 − transmission)·baseColor/π · (1 − gF(θi))(1 − gF(θo)) / (1 − g<F>)
 //
 // with F the exact dielectric Fresnel reflectance, F_metal Schlick's with F0 = baseColor (glTF) or the exact one of a
-// complex index, g = gloss·tint. The base's form is reciprocal and, for a white base under a smooth interface, loses and
-// gains nothing (after Kelemen & Szirmay-Kalos 2001); glTF's own (1 − F(v·h)) would return up to 1.9 times what arrives
-// at grazing angles. GGX with visible-normal sampling (Walter et al. 2007; Heitz 2018).
+// complex index, g = gloss·tint. The base's form is reciprocal and, for a white base under a smooth interface, loses
+// and gains nothing (after Kelemen & Szirmay-Kalos 2001); glTF's own (1 − F(v·h)) would return up to 1.9 times what
+// arrives at grazing angles. GGX with visible-normal sampling (Walter et al. 2007; Heitz 2018).
 #pragma once
 
 #include <cstdint>
@@ -24,7 +24,8 @@ namespace nephroid {
 
 enum class EventClass : std::uint8_t { kSpecular, kDiffuse };
 
-/// What a path carries decides how refraction scales it: radiance changes by the squared ratio of indices, flux does not.
+/// What a path carries decides how refraction scales it: radiance changes by the squared ratio of indices, flux does
+/// not.
 enum class Transport : std::uint8_t { kRadiance, kFlux };
 
 struct BsdfValue {
@@ -33,9 +34,9 @@ struct BsdfValue {
 };
 
 struct BsdfSample {
-  vec3 dir;               ///< unit, away from the surface
-  vec3 weight{0.0F};      ///< f·|cos| / pdf within the class
-  float pdf = 0.0F;       ///< per solid angle; 0 if delta
+  vec3 dir;           ///< unit, away from the surface
+  vec3 weight{0.0F};  ///< f·|cos| / pdf within the class
+  float pdf = 0.0F;   ///< per solid angle; 0 if delta
   bool delta = false;
   bool transmitted = false;  ///< through the surface
   bool pass = false;         ///< straight through a pane: no event
@@ -70,9 +71,11 @@ class Bsdf {
   vec3 normal() const { return frame_.z; }
 
  private:
-  vec3 reflectanceAt(float cos_theta) const;
-  vec3 transmittanceAt(float cos_theta) const;
-  vec3 baseFactor(float cos_theta) const;
+  /// Reflectance of one face for all that follow; 0 where none of them asks.
+  float fresnelAt(float cos_theta) const;
+  vec3 reflectanceAt(float cos_theta, float fresnel) const;
+  vec3 transmittanceFor(float fresnel) const;
+  vec3 baseFactorFor(float fresnel) const;
   bool sameSide(vec3 w) const { return (dot(w, normal_geometric_) > 0.0F) == side_is_outward_; }
   BsdfValue evaluateInterface(vec3 wi_local, bool reflected, Transport transport) const;
   std::optional<BsdfSample> sampleInterface(vec2 u, float u_lobe, Transport transport) const;
@@ -89,6 +92,7 @@ class Bsdf {
   bool smooth_, interface_is_specular_, index_matched_;
   float interface_probability_;
   vec3 reflectance_, transmittance_, base_albedo_, base_scale_;
+  vec3 base_factor_o_;  ///< of the base, at wo
 };
 
 }  // namespace nephroid

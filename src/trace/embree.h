@@ -1,4 +1,4 @@
-// Embree 3 and 4 behind one thin header: owning handles, checked errors, two ways to trace a ray.
+// Embree 3 and 4 behind one thin header: owning handles, checked errors, two ways to trace rays.
 //
 // The only place that knows which version it is. Embree 4 drops the intersect context in favour of arguments that
 // default to null, and renames the header folder; everything else that we use is the same.
@@ -65,6 +65,37 @@ inline bool intersectAny(RTCScene scene, RTCRay& ray) {
   rtcOccluded1(scene, &context, &ray);
 #endif
   return ray.tfar < 0.0F;
+}
+
+/// Eight rays at once, those whose `valid` is −1; they run alike, or packets gain nothing.
+/// @param valid  [8], aligned to 32 bytes
+inline void intersectClosest8(const int* valid, RTCScene scene, RTCRayHit8& ray_hits) {
+#if NEPHROID_EMBREE_MAJOR >= 4
+  RTCIntersectArguments arguments;
+  rtcInitIntersectArguments(&arguments);
+  arguments.flags = RTC_RAY_QUERY_FLAG_COHERENT;
+  rtcIntersect8(valid, scene, &ray_hits, &arguments);
+#else
+  RTCIntersectContext context;
+  rtcInitIntersectContext(&context);
+  context.flags = RTC_INTERSECT_CONTEXT_FLAG_COHERENT;
+  rtcIntersect8(valid, scene, &context, &ray_hits);
+#endif
+}
+
+/// The same for intersectAny: `rays.tfar` is −infinity where something lies on the ray.
+inline void intersectAny8(const int* valid, RTCScene scene, RTCRay8& rays) {
+#if NEPHROID_EMBREE_MAJOR >= 4
+  RTCOccludedArguments arguments;
+  rtcInitOccludedArguments(&arguments);
+  arguments.flags = RTC_RAY_QUERY_FLAG_COHERENT;
+  rtcOccluded8(valid, scene, &rays, &arguments);
+#else
+  RTCIntersectContext context;
+  rtcInitIntersectContext(&context);
+  context.flags = RTC_INTERSECT_CONTEXT_FLAG_COHERENT;
+  rtcOccluded8(valid, scene, &context, &rays);
+#endif
 }
 
 }  // namespace nephroid

@@ -21,40 +21,59 @@ class MaskedGrid {
 
   /// Ends marking. Cells are listed row by row, so that stratified numbers stay stratified over the marked area.
   void finish() {
-    cells_.clear();
+    runs_.clear();
+    row_runs_.assign(1, 0);
     row_begin_.assign(1, 0);
+    std::uint32_t count = 0;
     for (int y = 0; y < height_; ++y) {
-      for (int x = 0; x < width_; ++x)
-        if (isMarked(x, y)) cells_.push_back({static_cast<std::uint16_t>(x), static_cast<std::uint16_t>(y)});
-      row_begin_.push_back(static_cast<std::uint32_t>(cells_.size()));
+      for (int x = 0; x < width_; ++x) {
+        if (!isMarked(x, y)) continue;
+        if (x == 0 || !isMarked(x - 1, y)) runs_.push_back({count, static_cast<std::uint32_t>(x)});
+        ++count;
+      }
+      row_runs_.push_back(static_cast<std::uint32_t>(runs_.size()));
+      row_begin_.push_back(count);
     }
   }
-  std::size_t markedCount() const { return cells_.size(); }
+  std::size_t markedCount() const { return row_begin_.back(); }
   /// Marked share of the square: 1 / density of `sample`.
   double markedFraction() const {
-    return static_cast<double>(cells_.size()) / (static_cast<double>(width_) * static_cast<double>(height_));
+    return static_cast<double>(markedCount()) / (static_cast<double>(width_) * static_cast<double>(height_));
   }
   /// A point of the marked cells: the row by u.y, the place in the row by u.x. @pre markedCount() > 0
   vec2 sample(vec2 u) const {
     // Doubles: a float has too few bits to tell places within one of a million cells.
-    const double along = static_cast<double>(u.y) * static_cast<double>(cells_.size());
-    const auto target = std::min(static_cast<std::uint32_t>(along), static_cast<std::uint32_t>(cells_.size() - 1));
-    const std::uint32_t row = cells_[target].y;
+    const double along = static_cast<double>(u.y) * row_begin_.back();
+    const auto target = std::min(static_cast<std::uint32_t>(along), row_begin_.back() - 1);
+    const auto row = static_cast<std::uint32_t>(std::upper_bound(row_begin_.begin(), row_begin_.end(), target) -
+                                                row_begin_.begin() - 1);
     const std::uint32_t begin = row_begin_[row], count = row_begin_[row + 1] - begin;
     const double in_row = static_cast<double>(u.x) * count;
     const std::uint32_t cell = std::min(static_cast<std::uint32_t>(in_row), count - 1);
-    return {static_cast<float>((cells_[begin + cell].x + (in_row - cell)) / width_),
+    return {static_cast<float>((columnOf(row, begin + cell) + (in_row - cell)) / width_),
             static_cast<float>((row + (along - begin) / count) / height_)};
   }
 
  private:
+  /// Marked neighbours in a row. Few numbers, unlike a list of the cells: they stay in the cache while photons are
+  /// emitted all over.
+  struct Run {
+    std::uint32_t first;   ///< count of the marked cells before it, row by row
+    std::uint32_t column;  ///< of its first cell
+  };
+  std::uint32_t columnOf(std::uint32_t row, std::uint32_t cell) const {
+    const auto begin = runs_.begin() + row_runs_[row], end = runs_.begin() + row_runs_[row + 1];
+    const auto after =
+        std::upper_bound(begin, end, cell, [](std::uint32_t c, const Run& run) { return c < run.first; });
+    const Run& run = *(after - 1);
+    return run.column + (cell - run.first);
+  }
+
   int width_, height_;
   std::vector<std::uint8_t> marked_;
-  struct Cell {
-    std::uint16_t x, y;
-  };
-  std::vector<Cell> cells_;               ///< the marked ones, row by row
-  std::vector<std::uint32_t> row_begin_;  ///< height + 1 offsets into cells_
+  std::vector<Run> runs_;                    ///< row by row
+  std::vector<std::uint32_t> row_runs_;      ///< height + 1 offsets into runs_
+  std::vector<std::uint32_t> row_begin_{0};  ///< height + 1 counts of the marked cells before each row
 };
 
 /// Equal-area map of the square [0, 1]² onto the spherical cap about +z: concentric disc, then lifted.

@@ -5,8 +5,7 @@
 
 #include "core/optics/fresnel.shared.h"
 #include "core/optics/fresnel_average.h"
-#include "scene/classify.h"
-#include "trace/texture.h"
+#include "scene/texture.h"
 
 namespace nephroid {
 namespace {
@@ -17,12 +16,6 @@ bool hasTextures(const Material& m) {
 }
 
 }  // namespace
-
-float glossOf(float alpha, float transmission) {
-  const float faded = std::clamp((1.0F - alpha) / (1.0F - kDefaultSpecularAlpha), 0.0F, 1.0F);
-  // What transmits has a real interface at any roughness: energy that is not transmitted must be reflected.
-  return transmission + (1.0F - transmission) * faded;
-}
 
 float averageFresnel(float ior) {
   // 1024 steps over [1, 4] keep the linear interpolation's error below 1e-6; indices beyond are clamped.
@@ -46,6 +39,7 @@ MaterialTable::MaterialTable(const TraceScene& scene) : scene_(scene) {
   const SceneData& data = scene.scene();
   for (const Material& material : data.materials) {
     constant_.push_back(resolve(material, nullptr));
+    sigma_a_per_m_.push_back(material.sigmaA());
     const bool cut = material.alpha_mode != AlphaMode::kOpaque;
     any_passable_ = any_passable_ || cut || constant_.back().is_pane;
   }

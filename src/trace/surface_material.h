@@ -4,32 +4,24 @@
 #include <vector>
 
 #include "core/math.h"
+#include "scene/classify.h"
 #include "scene/scene_data.h"
 #include "trace/trace_scene.h"
 
 namespace nephroid {
-
-/// Below this microfacet width a lobe is a mirror in single precision: its half-width is under 0.02 degrees.
-inline constexpr float kDeltaAlpha = 5e-4F;
 
 struct SurfaceMaterial {
   const Material* source = nullptr;
   vec3 base{1.0F};
   float coverage = 1.0F;  ///< share of the surface that is there (alpha mask or blend); the rest is a hole
   float metallic = 0.0F;
-  float alpha = 1.0F;        ///< microfacet width; 0: smooth
+  float alpha = 1.0F;  ///< microfacet width; 0: smooth
   float transmission = 0.0F;
   float gloss = 0.0F;        ///< weight of the dielectric specular lobe, see `glossOf`
   vec3 specular_tint{1.0F};  ///< KHR_materials_specular
   bool is_solid = false;     ///< bounds a medium of another index
   bool is_pane = false;      ///< transmits, thin-walled
 };
-
-/// Weight of the dielectric specular lobe over a base that does not transmit: 1 up to the alpha at which a lobe stops
-/// being specular (0.25), then falling linearly to 0 at alpha 1. So a fully rough dielectric is exactly Lambertian and
-/// its base colour is its whole albedo, which is what authors mean by roughness 1 and what measured albedos state;
-/// single-scattering GGX at alpha 1 would add about 1.4 % of a Lambertian lobe and take 4 to 9 % from the base.
-float glossOf(float alpha, float transmission);
 
 /// Hemispherical average of the Fresnel reflectance towards a medium of relative index `ior` (to / from), tabulated.
 float averageFresnel(float ior);
@@ -44,12 +36,17 @@ class MaterialTable {
   vec3 emission(const SurfacePoint& point, bool outward) const;
   /// True if some surface lets straight rays through (panes, cut-outs): shadow rays must then look at what they meet.
   bool anyPassable() const { return any_passable_; }
+  /// Material::sigmaA, which takes logarithms, of one of the scene's materials.
+  vec3 sigmaAOf(const Material& material) const {
+    return sigma_a_per_m_[static_cast<std::size_t>(&material - scene_.scene().materials.data())];
+  }
 
  private:
   SurfaceMaterial resolve(const Material& material, const SurfacePoint* point) const;
 
   const TraceScene& scene_;
   std::vector<SurfaceMaterial> constant_;  ///< by material index
+  std::vector<vec3> sigma_a_per_m_;        ///< by material index
   std::vector<bool> varies_;               ///< by instance: textures or vertex colours
   bool any_passable_ = false;
 };

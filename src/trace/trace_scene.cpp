@@ -6,7 +6,7 @@
 #include <map>
 
 #include "nephroid/error.h"
-#include "trace/texture.h"
+#include "scene/texture.h"
 
 namespace nephroid {
 namespace {
@@ -19,6 +19,16 @@ constexpr float kPositionErrorScale = 0x1p-19F;
 /// Rays start a hair off zero: on a plane through the world's origin coordinates are exact, the offset is zero, and
 /// Embree counts a hit at distance zero. No length: any positive number serves.
 constexpr float kRayStart = 1e-30F;
+
+/// Fewer rays than this are traced one by one: a packet costs about as much as so many.
+constexpr std::size_t kSmallestPacket = 3;
+
+void setLane(RTCRay8& rays, std::size_t lane, const Ray& ray) {
+  rays.org_x[lane] = ray.origin.x, rays.org_y[lane] = ray.origin.y, rays.org_z[lane] = ray.origin.z;
+  rays.dir_x[lane] = ray.dir.x, rays.dir_y[lane] = ray.dir.y, rays.dir_z[lane] = ray.dir.z;
+  rays.tnear[lane] = kRayStart, rays.tfar[lane] = ray.t_max;
+  rays.time[lane] = 0.0F, rays.mask[lane] = ~0U, rays.id[lane] = 0, rays.flags[lane] = 0;
+}
 
 void onEmbreeError(void* /*user*/, RTCError code, const char* text) {
   // Embree calls this from inside its API; the state is read back by checkEmbree. Only memory failures can be the
@@ -163,13 +173,59 @@ bool TraceScene::intersect(const Ray& ray, RayHit& hit, bool coherent) const {
   query.hit.instID[0] = RTC_INVALID_GEOMETRY_ID;
   intersectClosest(top_.get(), query, coherent);
   if (query.hit.geomID == RTC_INVALID_GEOMETRY_ID) return false;
-  const unsigned top_id = query.hit.instID[0] != RTC_INVALID_GEOMETRY_ID ? query.hit.instID[0] : query.hit.geomID;
-  hit.t = query.ray.tfar;
-  hit.instance = instance_of_geometry_[top_id];
-  hit.triangle = query.hit.primID;
-  hit.u = query.hit.u;
-  hit.v = query.hit.v;
+  hit = describeHit(query.ray.tfar, query.hit.geomID, query.hit.instID[0], query.hit.primID, query.hit.u, query.hit.v);
   return true;
+}
+
+RayHit TraceScene::describeHit(float t, unsigned geometry, unsigned top_geometry, unsigned triangle, float u,
+                               float v) const {
+  const unsigned top_id = top_geometry != RTC_INVALID_GEOMETRY_ID ? top_geometry : geometry;
+  return {t, instance_of_geometry_[top_id], triangle, u, v};
+}
+
+void TraceScene::intersectPacket(std::span<const Ray* const> rays, RayHit* hits) const {
+  if (rays.size() < kSmallestPacket) {
+    for (std::size_t i = 0; i < rays.size(); ++i)
+      if (!intersect(*rays[i], hits[i], true)) hits[i].instance = kNone;
+    return;
+  }
+  alignas(32) int valid[kPacketSize];
+  RTCRayHit8 query;
+  for (std::size_t i = 0; i < kPacketSize; ++i) {
+    valid[i] = i < rays.size() ? -1 : 0;
+    // Lanes that are not valid repeat the last ray, so that no arithmetic meets uninitialised numbers.
+    const Ray& ray = *rays[std::min(i, rays.size() - 1)];
+    setLane(query.ray, i, ray);
+    query.hit.geomID[i] = RTC_INVALID_GEOMETRY_ID;
+    query.hit.instID[0][i] = RTC_INVALID_GEOMETRY_ID;
+    if (recorder_ && valid[i]) [[unlikely]]
+      recorder_->push_back(ray);
+  }
+  intersectClosest8(valid, top_.get(), query);
+  for (std::size_t i = 0; i < rays.size(); ++i) {
+    hits[i].instance = kNone;
+    if (query.hit.geomID[i] == RTC_INVALID_GEOMETRY_ID) continue;
+    hits[i] = describeHit(query.ray.tfar[i], query.hit.geomID[i], query.hit.instID[0][i], query.hit.primID[i],
+                          query.hit.u[i], query.hit.v[i]);
+    // `surfaceAt` will want it, and by then it is here.
+    __builtin_prefetch(&placed_[hits[i].instance].packed[hits[i].triangle]);
+  }
+}
+
+std::uint32_t TraceScene::occludedPacket(std::span<const Ray> rays) const {
+  alignas(32) int valid[kPacketSize];
+  RTCRay8 query;
+  for (std::size_t i = 0; i < kPacketSize; ++i) {
+    valid[i] = i < rays.size() ? -1 : 0;
+    const Ray& ray = rays[std::min(i, rays.size() - 1)];
+    setLane(query, i, ray);
+    if (recorder_ && valid[i]) [[unlikely]]
+      recorder_->push_back(ray);
+  }
+  intersectAny8(valid, top_.get(), query);
+  std::uint32_t blocked = 0;
+  for (std::size_t i = 0; i < rays.size(); ++i) blocked |= static_cast<std::uint32_t>(query.tfar[i] < 0.0F) << i;
+  return blocked;
 }
 
 bool TraceScene::occluded(const Ray& ray) const {

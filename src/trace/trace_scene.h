@@ -31,7 +31,8 @@ struct alignas(64) PackedTriangle {
   static std::uint64_t packNormal(vec3 n);
   static vec3 unpackNormal(std::uint64_t packed) {
     const auto channel = [](std::uint64_t bits) {
-      return static_cast<float>(static_cast<std::int32_t>(bits & 0x1FFFFFU) - (1 << 20)) * (1.0F / static_cast<float>((1 << 20) - 1));
+      return static_cast<float>(static_cast<std::int32_t>(bits & 0x1FFFFFU) - (1 << 20)) *
+             (1.0F / static_cast<float>((1 << 20) - 1));
     };
     return {channel(packed), channel(packed >> 21), channel(packed >> 42)};
   }
@@ -70,6 +71,13 @@ class TraceScene {
   bool intersect(const Ray& ray, RayHit& hit, bool coherent = false) const;
   /// Is there any triangle between the origin and t_max? Cheaper than `intersect`.
   bool occluded(const Ray& ray) const;
+
+  /// Rays that are traced together: cheaper than one by one if they start and run alike.
+  static constexpr std::size_t kPacketSize = 8;
+  /// Nearest triangles; `hits[i].instance` is kNone for a miss. @param rays  1 to kPacketSize of them
+  void intersectPacket(std::span<const Ray* const> rays, RayHit* hits) const;
+  /// @return  bit i: is there any triangle on ray i? @param rays  1 to kPacketSize of them
+  std::uint32_t occludedPacket(std::span<const Ray> rays) const;
 
   SurfacePoint surfaceAt(const Ray& ray, const RayHit& hit) const;
   /// Texture coordinates of set 0 or 1; zero where the mesh has none.
@@ -110,6 +118,7 @@ class TraceScene {
   void buildPlaced();
   void buildEmbree();
   RTCGeometry makeTriangles(const Placed& placed);
+  RayHit describeHit(float t, unsigned geometry, unsigned top_geometry, unsigned triangle, float u, float v) const;
   vec3 perturbNormal(const Placed& placed, const SurfacePoint& point, vec3 normal) const;
 
   const SceneData& scene_;

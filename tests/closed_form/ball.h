@@ -1,8 +1,8 @@
 // The caustic of a glass ball under a sun, on a plane behind it.
 //
-// A ray at distance h from the axis meets the ball (radius a) at θ with sin θ = h/a and refracts to θ', sin θ = n sin θ'.
-// It stays in its meridional plane, and every further hit is at θ' again, so all reflectances on the way are the same
-// R(θ). It gives off
+// A ray at distance h from the axis meets the ball (radius a) at θ with sin θ = h/a and refracts to θ', sin θ = n sin
+// θ'. It stays in its meridional plane, and every further hit is at θ' again, so all reflectances on the way are the
+// same R(θ). It gives off
 //
 //   outside        share R             turned by  π − 2θ
 //   order k >= 0   share (1 − R)² R^k  turned by  2(θ − θ') + k(π − 2θ')
@@ -30,13 +30,14 @@ struct BallCase {
   double view_radius = 0.1;  ///< of the profile, m
 };
 
-/// Where one order of a ray lands, as |r|; nothing if it leaves upwards. The ray falls along −y at x = −h, about a ball at
-/// the origin; turning towards the axis is counter-clockwise.
+/// Where one order of a ray lands, as |r|; nothing if it leaves upwards. The ray falls along −y at x = −h, about a ball
+/// at the origin; turning towards the axis is counter-clockwise.
 inline std::optional<double> landOnPlane(const BallCase& c, double theta, double theta_inside, int order) {
   // Polar angle of the point where it leaves: order −1 leaves where it came.
   const double entry = 0.5 * kPiD + theta;
   const double exit = entry + (order + 1) * (kPiD - 2.0 * theta_inside);
-  const double turn = order < 0 ? -(kPiD - 2.0 * theta) : 2.0 * (theta - theta_inside) + order * (kPiD - 2.0 * theta_inside);
+  const double turn =
+      order < 0 ? -(kPiD - 2.0 * theta) : 2.0 * (theta - theta_inside) + order * (kPiD - 2.0 * theta_inside);
   const double dir = -0.5 * kPiD + turn;
   const double drop = c.radius + c.gap + c.radius * std::sin(exit);
   if (std::sin(dir) >= 0.0) return std::nullopt;
@@ -69,9 +70,10 @@ inline std::vector<double> ballIrradiance(const BallCase& c, std::size_t bins) {
 inline double ballFocalDistance(double radius, double ior) { return ior * radius / (2.0 * (ior - 1.0)); }
 
 inline SceneData makeBallScene(const BallCase& c, int segments) {
-  return loadScene(fmt::format("builtin:sphere?light=sun&sun-elevation=90&irradiance=1&floor-size=2&radius={}&height={}&ior={}&"
-                               "segments={}",
-                               c.radius, c.gap, c.ior, segments));
+  return loadScene(
+      fmt::format("builtin:sphere?light=sun&sun-elevation=90&irradiance=1&floor-size=2&radius={}&height={}&ior={}&"
+                  "segments={}",
+                  c.radius, c.gap, c.ior, segments));
 }
 
 inline PlaneView ballView(const BallCase& c, int pixels) {

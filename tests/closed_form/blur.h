@@ -1,18 +1,18 @@
 // How a sun with a size blurs an edge.
 //
-// A sheet of water (a flat interface, open below) has a straight edge. The sun is a disc of uniform radiance and angular
-// diameter α at the zenith. A point of the interface at height d sends its light on to the floor in directions with
-// sin θ' = sin θ / n: the disc of directions, uniform in projected solid angle, becomes a disc of landing points
+// A sheet of water (a flat interface, open below) has a straight edge. The sun is a disc of uniform radiance and
+// angular diameter α at the zenith. A point of the interface at height d sends its light on to the floor in directions
+// with sin θ' = sin θ / n: the disc of directions, uniform in projected solid angle, becomes a disc of landing points
 //
 //   ρ = d tan θ'_max,   sin θ'_max = sin(α/2) / n,
 //
-// uniform as far as sin ≈ tan. The edge of the lit floor, at distance s inside the edge of the sheet, sees the part of that
-// disc on one side of a line at s from its centre; a segment of a circle gives the edge-spread function
+// uniform as far as sin ≈ tan. The edge of the lit floor, at distance s inside the edge of the sheet, sees the part of
+// that disc on one side of a line at s from its centre; a segment of a circle gives the edge-spread function
 //
 //   E(s)/E(∞) = 1/2 + (asin u + u √(1 − u²))/π,   u = s/ρ in [−1, 1].
 //
-// With n = 1 it is a shadow's penumbra, of width 2 d tan(α/2); water narrows it by n. Light that passes beside the sheet
-// meets the floor without an event and is not in the caustic. R varies over the disc by less than 1e-5 of E.
+// With n = 1 it is a shadow's penumbra, of width 2 d tan(α/2); water narrows it by n. Light that passes beside the
+// sheet meets the floor without an event and is not in the caustic. R varies over the disc by less than 1e-5 of E.
 #pragma once
 
 #include <fmt/format.h>
@@ -65,7 +65,8 @@ inline SceneData makeBlurScene(const BlurCase& c) {
   water.thickness = 1.0F;
   water.ior = static_cast<float>(c.ior);
   addObject(scene, makeRectangle("water", {half_x, c.distance, 0}, {half_x, 0, 0}, {0, 0, -half_z}), water);
-  addObject(scene, makeRectangle("floor", {0, 0, 0}, {2.0 * c.length, 0, 0}, {0, 0, -2.0 * c.length}), makeDiffuse("floor", vec3(0.5F)));
+  addObject(scene, makeRectangle("floor", {0, 0, 0}, {2.0 * c.length, 0, 0}, {0, 0, -2.0 * c.length}),
+            makeDiffuse("floor", vec3(0.5F)));
   scene.lights.push_back(makeSun({0, -1, 0}, static_cast<float>(c.angle_deg)));
   return scene;
 }

@@ -1,18 +1,20 @@
 // Curved mirrors: the paraboloid, which has a focus, and the sphere, which has none.
 //
-// Paraboloid y = r²/(4f), light along −y. At r the normal is tilted by β, tan β = r/(2f), so the reflected ray is turned by
-// 2β from +y towards the axis, and tan 2β = 2 tan β/(1 − tan² β) = r/(f − r²/(4f)): it passes through (0, f), for every r.
-// All the light that the mirror takes up, less what the metal absorbs, is on a receiver of any size about the focus:
+// Paraboloid y = r²/(4f), light along −y. At r the normal is tilted by β, tan β = r/(2f), so the reflected ray is
+// turned by 2β from +y towards the axis, and tan 2β = 2 tan β/(1 − tan² β) = r/(f − r²/(4f)): it passes through (0, f),
+// for every r. All the light that the mirror takes up, less what the metal absorbs, is on a receiver of any size about
+// the focus:
 //
 //   Φ = ∫ E⊥ ρ(cos β) dA⊥,   cos β = 1/√(1 + r²/(4f²)).
 //
-// Sphere of radius R about the origin, concave upwards, its lowest point at −R. At h the normal is tilted by α, sin α = h/R,
-// the reflected ray makes 2α with +y. In the triangle of centre, mirror point and crossing the base angles are both α and
-// the base is R, so it crosses the axis at the distance R/(2 cos α) below the centre:
+// Sphere of radius R about the origin, concave upwards, its lowest point at −R. At h the normal is tilted by α, sin α =
+// h/R, the reflected ray makes 2α with +y. In the triangle of centre, mirror point and crossing the base angles are
+// both α and the base is R, so it crosses the axis at the distance R/(2 cos α) below the centre:
 //
 //   s(h) = R − R/(2 cos α)  above the lowest point, R/2 for h → 0 (the paraxial focus), less farther out.
 //
-// On a plane at the height p above the lowest point the ring h lands at r(h) = (s − p) tan 2α (negative: beyond the axis).
+// On a plane at the height p above the lowest point the ring h lands at r(h) = (s − p) tan 2α (negative: beyond the
+// axis).
 #pragma once
 
 #include <fmt/format.h>
@@ -54,7 +56,8 @@ inline SceneData makeParaboloidScene(const ParaboloidCase& c, int cells) {
   for (vec3& position : mirror.positions) position.x += static_cast<float>(middle);
   addObject(scene, std::move(mirror), makeMirror("mirror", vec3(static_cast<float>(c.reflectance))));
   const double half = 0.5 * c.receiver;
-  addObject(scene, makeRectangle("receiver", {0, f, 0}, {half, 0, 0}, {0, 0, half}), makeDiffuse("receiver", vec3(0.5F)));
+  addObject(scene, makeRectangle("receiver", {0, f, 0}, {half, 0, 0}, {0, 0, half}),
+            makeDiffuse("receiver", vec3(0.5F)));
   scene.lights.push_back(makeSun({0, -1, 0}));
   return scene;
 }
@@ -91,7 +94,8 @@ inline std::vector<double> sphericalIrradiance(const SphericalMirrorCase& c, std
   const double from = std::max(c.h0, c.receiver_radius), step = (c.h1 - from) / kRings;
   for (int i = 0; i < kRings; ++i) {
     const double h = from + i * step;
-    profile.deposit(std::abs(sphericalLanding(c, h)), std::abs(sphericalLanding(c, h + step)), 2.0 * kPiD * (h + 0.5 * step) * step);
+    profile.deposit(std::abs(sphericalLanding(c, h)), std::abs(sphericalLanding(c, h + step)),
+                    2.0 * kPiD * (h + 0.5 * step) * step);
   }
   return profile.perAnnulus();
 }
@@ -105,7 +109,8 @@ inline SceneData makeSphericalMirrorScene(const SphericalMirrorCase& c, int rows
   appendCurve(
       profile,
       [&](double a) {
-        return ProfilePoint{{c.radius * std::sin(a), c.radius * (1.0 - std::cos(a))}, {-std::sin(a), std::cos(a)}, false};
+        return ProfilePoint{
+            {c.radius * std::sin(a), c.radius * (1.0 - std::cos(a))}, {-std::sin(a), std::cos(a)}, false};
       },
       a1, a0, rows);
   addObject(scene, makeRevolution("mirror", profile, segments), makeMirror("mirror", vec3(1.0F)));

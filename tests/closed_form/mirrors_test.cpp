@@ -54,7 +54,8 @@ TEST(SphericalMirror, CrossesTheAxisWhereTheFormulaSays) {
 }
 
 TEST(SphericalMirror, SpreadsItsFocusIntoTheAberrationDiscToTwoPercent) {
-  // In the paraxial focal plane marginal rays land farthest out: r(0.5) = 0.134, of which the receiver catches the inner 0.03.
+  // In the paraxial focal plane marginal rays land farthest out: r(0.5) = 0.134, of which the receiver catches the
+  // inner 0.03.
   const SphericalMirrorCase c;
   const PlaneView view = receiverView(c.plane, 2.0 * c.receiver_radius, 1024);
   const PlanePicture picture = renderPlane(makeSphericalMirrorScene(c, 256, 512), view, std::uint64_t{1} << 20);

@@ -1,8 +1,8 @@
 // Deviation of a prism.
 //
-// In a plane across the edge, with apex angle A: light enters at i, runs inside at i' (sin i = n sin i'), meets the second
-// face at e' = A − i' (the two normals enclose A) and leaves at e, sin e = n sin e'. It was turned by i − i' and then by
-// e − e', both towards the base:
+// In a plane across the edge, with apex angle A: light enters at i, runs inside at i' (sin i = n sin i'), meets the
+// second face at e' = A − i' (the two normals enclose A) and leaves at e, sin e = n sin e'. It was turned by i − i' and
+// then by e − e', both towards the base:
 //
 //   δ(i) = i + asin(n sin(A − asin(sin i / n))) − A.
 //
@@ -11,8 +11,8 @@
 //
 //   δ_min = 2 asin(n sin(A/2)) − A.
 //
-// The renderer's angle is measured, not asked for: the same beam is caught on the floor with the prism at two heights, and
-// the way by which its centre moves per height is the cotangent of its elevation.
+// The renderer's angle is measured, not asked for: the same beam is caught on the floor with the prism at two heights,
+// and the way by which its centre moves per height is the cotangent of its elevation.
 #pragma once
 
 #include <fmt/format.h>
@@ -36,15 +36,19 @@ inline double prismDeviation(double apex, double incidence, double ior) {
   const double inside = std::asin(std::sin(incidence) / ior);
   return incidence + std::asin(ior * std::sin(apex - inside)) - apex;
 }
-inline double prismMinimumDeviation(double apex, double ior) { return 2.0 * std::asin(ior * std::sin(0.5 * apex)) - apex; }
+inline double prismMinimumDeviation(double apex, double ior) {
+  return 2.0 * std::asin(ior * std::sin(0.5 * apex)) - apex;
+}
 
-/// A beam of 1 mm on the axis of a prism of 40 mm, `height` above the floor. The sun stands at −X. With the prism turned by
-/// t from apex up, its lit face looks up by A/2 + t short of −X's opposite, that is, light meets it at t + A/2 − elevation.
+/// A beam of 1 mm on the axis of a prism of 40 mm, `height` above the floor. The sun stands at −X. With the prism
+/// turned by t from apex up, its lit face looks up by A/2 + t short of −X's opposite, that is, light meets it at t +
+/// A/2 − elevation.
 inline SceneData makePrismScene(const PrismCase& c, double height) {
   const double turn = c.incidence_deg - 0.5 * c.apex_deg + c.sun_elevation_deg;
-  return loadScene(fmt::format("builtin:prism?light=sun&irradiance=1&sun-azimuth=-90&sun-elevation={}&apex={}&ior={}&abbe={}&"
-                               "turn={}&height={}&slit=0.001&floor-size=4",
-                               c.sun_elevation_deg, c.apex_deg, c.ior, c.abbe, turn, height));
+  return loadScene(
+      fmt::format("builtin:prism?light=sun&irradiance=1&sun-azimuth=-90&sun-elevation={}&apex={}&ior={}&abbe={}&"
+                  "turn={}&height={}&slit=0.001&floor-size=4",
+                  c.sun_elevation_deg, c.apex_deg, c.ior, c.abbe, turn, height));
 }
 
 /// The strip of floor on which the beam of a given elevation lands, give or take some degrees.
@@ -58,8 +62,8 @@ inline PlaneView prismView(double expected_elevation, double height, double widt
   return view;
 }
 
-/// Centre of the light on the floor along X, m. Bands of wavelength may weigh negative in a channel, so each pixel counts by
-/// what it has in all, whatever its sign.
+/// Centre of the light on the floor along X, m. Bands of wavelength may weigh negative in a channel, so each pixel
+/// counts by what it has in all, whatever its sign.
 inline double beamCentre(const PlanePicture& picture, int first_column, int last_column) {
   double sum = 0.0, moment = 0.0;
   std::vector<double> channels[3];
@@ -97,9 +101,11 @@ inline std::vector<double> measureDeviations(const PrismCase& c, double expected
   std::vector<double> centres[2];
   for (const bool high : {false, true}) {
     const double height = high ? kHigh : kLow;
-    const PlanePicture picture = renderPlane(makePrismScene(c, height), prismView(expected_elevation, height, 0.25 * height), photons, 1, settings);
+    const PlanePicture picture = renderPlane(
+        makePrismScene(c, height), prismView(expected_elevation, height, 0.25 * height), photons, 1, settings);
     if (worstResidual(picture.ledgers) > 1e-5) return {};
-    for (const auto& [first, last] : findBeams(picture)) centres[high ? 1 : 0].push_back(beamCentre(picture, first, last));
+    for (const auto& [first, last] : findBeams(picture))
+      centres[high ? 1 : 0].push_back(beamCentre(picture, first, last));
   }
   std::vector<double> deviations;
   if (centres[0].size() != centres[1].size()) return deviations;

@@ -8,7 +8,8 @@ namespace nephroid::closed_form {
 namespace {
 
 constexpr double kTolerance_deg = 0.05;
-// The slit lets a fortieth of the photons through; a beam's centre is known to a hundredth of its width of 1 mm, 0.002 degrees.
+// The slit lets a fortieth of the photons through; a beam's centre is known to a hundredth of its width of 1 mm, 0.002
+// degrees.
 constexpr std::uint64_t kPhotons = std::uint64_t{1} << 17;
 
 /// The one beam's deviation, degrees.

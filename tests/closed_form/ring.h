@@ -1,15 +1,16 @@
 // The nephroid: sunlight inside a reflecting circle.
 //
-// A ring of inner radius a and height H stands on the floor. The sun, at elevation ε over +X, shines over the near rim onto
-// the far inner wall. Seen from above, a ray along (−1, 0) meets the wall at P(φ) = a (−cos φ, sin φ), |φ| < π/2, at the
-// angle φ to its normal; at height y it has come over the near rim if
+// A ring of inner radius a and height H stands on the floor. The sun, at elevation ε over +X, shines over the near rim
+// onto the far inner wall. Seen from above, a ray along (−1, 0) meets the wall at P(φ) = a (−cos φ, sin φ), |φ| < π/2,
+// at the angle φ to its normal; at height y it has come over the near rim if
 //
 //   y + 2 a cos φ tan ε >= H        (2 a cos φ is the chord that it crossed).
 //
-// The wall is upright, so the reflection turns the horizontal direction alone, into u(φ) = (cos 2φ, −sin 2φ), and the ray
-// goes on falling by tan ε per horizontal length. It reaches the floor after ℓ = y / tan ε. If ℓ is longer than the chord
-// 2 a cos φ it meets the wall once more, at the same angle φ (a chord's ends are alike), is turned by the angle π − 2φ
-// again, and so on. Per reflection ρ(cos ε cos φ) of it is left, by Schlick, which here is the definition of the material.
+// The wall is upright, so the reflection turns the horizontal direction alone, into u(φ) = (cos 2φ, −sin 2φ), and the
+// ray goes on falling by tan ε per horizontal length. It reaches the floor after ℓ = y / tan ε. If ℓ is longer than the
+// chord 2 a cos φ it meets the wall once more, at the same angle φ (a chord's ends are alike), is turned by the angle π
+// − 2φ again, and so on. Per reflection ρ(cos ε cos φ) of it is left, by Schlick, which here is the definition of the
+// material.
 //
 // A patch a dφ dy of the wall receives E⊥ cos ε cos φ a dφ dy. It lands on the floor on
 //
@@ -53,8 +54,8 @@ inline RingLanding traceRing(const RingCase& c, double phi, double y) {
   const double kept = schlickReflectance(std::cos(elevation) * std::cos(phi), c.reflectance);
   double left = y / std::tan(elevation), share = kept, at = kPiD - phi, heading = -2.0 * phi;
   for (; left > chord; left -= chord) {
-    // The chord from polar angle `at` along `heading` ends at 2·heading − at + π; there the heading turns by −(π − 2|φ|)
-    // towards the side on which it runs along the wall: the same turn as from −X at the first hit.
+    // The chord from polar angle `at` along `heading` ends at 2·heading − at + π; there the heading turns by −(π −
+    // 2|φ|) towards the side on which it runs along the wall: the same turn as from −X at the first hit.
     at = 2.0 * heading - at + kPiD;
     heading += kPiD - 2.0 * phi;
     share *= kept;
@@ -77,7 +78,8 @@ inline Image ringIrradiance(const RingCase& c, int pixels) {
       const int column = static_cast<int>((landing.position.x / a + 1.0) * 0.5 * pixels);
       const int row = static_cast<int>((landing.position.y / a + 1.0) * 0.5 * pixels);
       if (column < 0 || row < 0 || column >= pixels || row >= pixels) continue;
-      flux[static_cast<std::size_t>(row) * static_cast<std::size_t>(pixels) + static_cast<std::size_t>(column)] += patch * landing.share;
+      flux[static_cast<std::size_t>(row) * static_cast<std::size_t>(pixels) + static_cast<std::size_t>(column)] +=
+          patch * landing.share;
     }
   }
   const double area = 4.0 * a * a / pixels / pixels;
@@ -87,10 +89,11 @@ inline Image ringIrradiance(const RingCase& c, int pixels) {
 }
 
 inline SceneData makeRingScene(const RingCase& c, int segments) {
-  return loadScene(fmt::format("builtin:ring?light=sun&irradiance=1&sun-azimuth=90&sun-elevation={}&radius={}&wall={}&height={}&"
-                               "material=metal&color={},{},{}&segments={}",
-                               c.sun_elevation_deg, c.inner_radius + c.wall, c.wall, c.height, c.reflectance, c.reflectance,
-                               c.reflectance, segments));
+  return loadScene(
+      fmt::format("builtin:ring?light=sun&irradiance=1&sun-azimuth=90&sun-elevation={}&radius={}&wall={}&height={}&"
+                  "material=metal&color={},{},{}&segments={}",
+                  c.sun_elevation_deg, c.inner_radius + c.wall, c.wall, c.height, c.reflectance, c.reflectance,
+                  c.reflectance, segments));
 }
 
 /// The inside of the ring, seen from below its rim.

@@ -20,7 +20,8 @@ std::vector<double> sumSquares(const Image& image) {
       if (std::hypot(far_x, far_y) > 0.5 * size) continue;
       sums.push_back(0.0);
       for (int y = kSide * row; y < kSide * (row + 1); ++y)
-        for (int x = kSide * column; x < kSide * (column + 1); ++x) sums.back() += static_cast<double>(image.at(x, y)[0]);
+        for (int x = kSide * column; x < kSide * (column + 1); ++x)
+          sums.back() += static_cast<double>(image.at(x, y)[0]);
     }
   }
   return sums;
@@ -56,8 +57,9 @@ TEST_F(RingCaustic, HasThePredictedProfileAlongTheAxisToThreePercent) {
 }
 
 TEST_F(RingCaustic, IsBrightestOnTheNephroid) {
-  // Down each of some columns the brightest pixel lies on the curve: inside there are more rays, at the fold infinitely many.
-  // These columns cross the upper branch, φ from 45 to 75 degrees, which has |z| > a/(2√2); the cusp's light is below.
+  // Down each of some columns the brightest pixel lies on the curve: inside there are more rays, at the fold infinitely
+  // many. These columns cross the upper branch, φ from 45 to 75 degrees, which has |z| > a/(2√2); the cusp's light is
+  // below.
   const RingCase c;
   const double pixel = picture().view.pixelSize();
   double worst = 0.0;
@@ -81,8 +83,8 @@ TEST_F(RingCaustic, IsBrightestOnTheNephroid) {
 }
 
 TEST_F(RingCaustic, HasItsCuspHalfwayBetweenWallAndCentre) {
-  // The two rows about the axis are a strip |z| <= w of one pixel. Near the cusp N(φ)/a = (−1/2 − 3φ²/4, φ³): the strip holds
-  // both folds up to φ = (w/a)^(1/3) and is brightest where they leave it, at x/a = −1/2 − (3/4)(w/a)^(2/3).
+  // The two rows about the axis are a strip |z| <= w of one pixel. Near the cusp N(φ)/a = (−1/2 − 3φ²/4, φ³): the strip
+  // holds both folds up to φ = (w/a)^(1/3) and is brightest where they leave it, at x/a = −1/2 − (3/4)(w/a)^(2/3).
   const RingCase c;
   const double pixel = picture().view.pixelSize() / c.inner_radius;
   const std::vector<double> profile = axisProfile(picture().irradiance, 2);
@@ -103,7 +105,8 @@ TEST(RingFormula, HasTheNephroidAsItsEnvelope) {
   EXPECT_NEAR(here.y, curve.y, 1e-12);
   const dvec2 across = (traceRing(c, phi + step, y).position - traceRing(c, phi - step, y).position) / (2.0 * step);
   const dvec2 along(std::cos(2.0 * phi), -std::sin(2.0 * phi));
-  EXPECT_NEAR(across.x * along.y - across.y * along.x, 0.0, 1e-9) << "the map from (φ, y) to the floor is singular here";
+  EXPECT_NEAR(across.x * along.y - across.y * along.x, 0.0, 1e-9)
+      << "the map from (φ, y) to the floor is singular here";
 }
 
 TEST(RingFormula, KeepsTheAngleFromWallToWall) {

@@ -22,7 +22,7 @@ namespace nephroid::closed_form {
 struct SlabCase {
   double angle_deg = 0.0;  ///< of incidence
   double ior = 1.5;
-  dvec3 color{1.0};        ///< what white becomes after a path of one thickness
+  dvec3 color{1.0};  ///< what white becomes after a path of one thickness
   double thickness = 0.02, size = 0.6, height = 0.06;
 };
 
@@ -36,17 +36,18 @@ inline dvec3 slabIrradiance(const SlabCase& c) {
 
 inline SceneData makeSlabScene(const SlabCase& c) {
   // The slab's centre is at `height`; the sun stands over +X.
-  return loadScene(fmt::format("builtin:slab?irradiance=1&sun-azimuth=90&sun-elevation={}&size={}&thickness={}&height={}&"
-                               "ior={}&color={},{},{}&attenuation-distance={}&floor-size=4",
-                               90.0 - c.angle_deg, c.size, c.thickness, c.height, c.ior, c.color.x, c.color.y,
-                               c.color.z, c.thickness));
+  return loadScene(fmt::format(
+      "builtin:slab?irradiance=1&sun-azimuth=90&sun-elevation={}&size={}&thickness={}&height={}&"
+      "ior={}&color={},{},{}&attenuation-distance={}&floor-size=4",
+      90.0 - c.angle_deg, c.size, c.thickness, c.height, c.ior, c.color.x, c.color.y, c.color.z, c.thickness));
 }
 
 /// A square a quarter as wide as the slab, in the middle of its shadow, so that nothing of the slab's ends shows: every
 /// point gets all orders that matter, and none of the light that runs to the far end, is totally reflected there and
 /// leaves as a second, backward beam (at 60 degrees it lands some 0.12 m from the middle).
 inline PlaneView slabView(const SlabCase& c) {
-  const double below = c.height - 0.5 * c.thickness, tan_t = std::tan(std::asin(std::sin(radiansD(c.angle_deg)) / c.ior));
+  const double below = c.height - 0.5 * c.thickness,
+               tan_t = std::tan(std::asin(std::sin(radiansD(c.angle_deg)) / c.ior));
   const double shift = below * std::tan(radiansD(c.angle_deg)) + 0.5 * c.thickness * tan_t;
   PlaneView view;
   view.centre = vec3(-static_cast<float>(shift), 0, 0);

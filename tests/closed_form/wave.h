@@ -57,9 +57,10 @@ inline double waveFocalDepth(const WaveCase& c) {
 }
 
 inline SceneData makeWaveScene(const WaveCase& c, int segments) {
-  return loadScene(fmt::format("builtin:wave?waves=1&irradiance=1&size={}&depth={}&amplitude={}&wavelength={}&ior={}&"
-                               "segments={}&floor-size={}",
-                               c.size, c.depth, c.amplitude, c.wavelength, c.ior, segments, 2.0 * c.size));
+  return loadScene(
+      fmt::format("builtin:wave?waves=1&irradiance=1&size={}&depth={}&amplitude={}&wavelength={}&ior={}&"
+                  "segments={}&floor-size={}",
+                  c.size, c.depth, c.amplitude, c.wavelength, c.ior, segments, 2.0 * c.size));
 }
 
 /// One wavelength, 512 pixels wide, in the middle, and nearly as long as the patch: light is

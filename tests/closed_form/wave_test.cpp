@@ -5,12 +5,13 @@
 namespace nephroid::closed_form {
 namespace {
 
-// Some 45 % of the photons land in the view: 470 000, or 920 a column. Random numbers would leave an error of 2.6 % in the
-// profile (0.8/sqrt(920)); the stratified ones of the sampler leave a fraction of it.
+// Some 45 % of the photons land in the view: 470 000, or 920 a column. Random numbers would leave an error of 2.6 % in
+// the profile (0.8/sqrt(920)); the stratified ones of the sampler leave a fraction of it.
 constexpr std::uint64_t kPhotons = std::uint64_t{1} << 20;
 
-// Cells a 256th of the wavelength wide. Between vertices slopes are linear, so that on the floor a cell is a step of constant
-// irradiance: its error is of first order in the cell's width, and greatest beyond the focus (3 % at 64 cells).
+// Cells a 256th of the wavelength wide. Between vertices slopes are linear, so that on the floor a cell is a step of
+// constant irradiance: its error is of first order in the cell's width, and greatest beyond the focus (3 % at 64
+// cells).
 constexpr int kCells = 512;
 
 /// Relative L1 over a row of 512 pixels.

@@ -17,11 +17,11 @@ namespace nephroid::closed_form {
 /// Rays of an orthographic camera begin at its own plane, so that whatever hangs over the receiver is behind the camera
 /// and hides nothing: the picture is the irradiance on the receiver, W/m², pixel by pixel.
 struct PlaneView {
-  vec3 centre{0.0F};       ///< of the rectangle, on the plane
-  vec3 normal{0, 1, 0};    ///< unit, out of the lit side
-  vec3 up{0, 0, -1};       ///< unit, in the plane: towards row 0. Columns run along up × normal
-  double distance = 0.0;   ///< of the camera from the plane, m: less than the gap to whatever is over it
-  double width = 1.0;      ///< m; pixels are square, so the height is width · rows / columns
+  vec3 centre{0.0F};      ///< of the rectangle, on the plane
+  vec3 normal{0, 1, 0};   ///< unit, out of the lit side
+  vec3 up{0, 0, -1};      ///< unit, in the plane: towards row 0. Columns run along up × normal
+  double distance = 0.0;  ///< of the camera from the plane, m: less than the gap to whatever is over it
+  double width = 1.0;     ///< m; pixels are square, so the height is width · rows / columns
   int columns = 512, rows = 512;
 
   double pixelSize() const { return width / columns; }

@@ -87,6 +87,9 @@ BenchResult benchScene(const std::string& source, const Technique& technique, co
     measureRender(technique, scene, settings, run < options.warmup ? warmup : result.measurements);
   }
   addMeasured(result.measurements, "load", "s", load_s);
+  if (technique.name == "reference" && !stopToken().requested())
+    for (Measurement& measurement : measureLightTracingShare(scene, options.repeats))
+      result.measurements.push_back(std::move(measurement));
   return result;
 }
 

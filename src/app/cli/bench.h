@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "scene/scene_data.h"
 #include "techniques/technique.h"
 
 namespace nephroid::cli {
@@ -20,6 +21,9 @@ struct BenchResult {
   std::string scene, technique;
   std::vector<Measurement> measurements;
 };
+
+/// Light tracing against plain rays (bench_light_tracing.cpp); empty where no light reaches anything that bends it.
+std::vector<Measurement> measureLightTracingShare(const SceneData& scene, int repeats);
 
 /// Middle value; the mean of the two middle ones of an even number. 0 of none.
 double computeMedian(std::vector<double> values);

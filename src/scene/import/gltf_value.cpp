@@ -21,12 +21,12 @@ std::optional<vec4> getNumbers(const tinygltf::Value& object, const std::string&
 
 }  // namespace
 
-const tinygltf::Value& getMember(const tinygltf::Value& object, const std::string& key) {
-  return object.IsObject() ? object.Get(key) : kNull;
+const tinygltf::Value& getMember(const tinygltf::Value& object, std::string_view key) {
+  return object.IsObject() ? object.Get(std::string(key)) : kNull;
 }
 
-const tinygltf::Value& getExtension(const tinygltf::ExtensionMap& extensions, const std::string& name) {
-  const auto found = extensions.find(name);
+const tinygltf::Value& getExtension(const tinygltf::ExtensionMap& extensions, std::string_view name) {
+  const auto found = extensions.find(std::string(name));
   return found == extensions.end() ? kNull : found->second;
 }
 

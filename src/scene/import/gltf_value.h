@@ -4,6 +4,7 @@
 
 #include <optional>
 #include <string>
+#include <string_view>
 
 #include "core/math.h"
 #include "scene/import/gltf_document.h"
@@ -11,9 +12,9 @@
 namespace nephroid::gltf {
 
 /// The member of an object, or a null value.
-const tinygltf::Value& getMember(const tinygltf::Value& object, const std::string& key);
+const tinygltf::Value& getMember(const tinygltf::Value& object, std::string_view key);
 /// The extension's value, or a null value.
-const tinygltf::Value& getExtension(const tinygltf::ExtensionMap& extensions, const std::string& name);
+const tinygltf::Value& getExtension(const tinygltf::ExtensionMap& extensions, std::string_view name);
 inline bool isPresent(const tinygltf::Value& value) { return value.Type() != tinygltf::NULL_TYPE; }
 
 int getInt(const tinygltf::Value& object, const std::string& key, int fallback);

@@ -3,207 +3,83 @@
 #include <algorithm>
 #include <cmath>
 
-#include "trace/bsdf.h"
+#include "techniques/reference/light_path.h"
+#include "techniques/reference/photon_order.h"
 
 namespace nephroid {
 namespace {
 
-/// Events before Russian roulette may end a photon: it only ends what absorption has made weak.
-constexpr int kRouletteStart = 8;
+/// Photons that are put in order together: many, so that neighbours are near.
+constexpr std::uint32_t kWavePhotons = 4096;
+/// Photons that are on their way together: several packets, few enough to stay in the cache.
+constexpr std::size_t kGroupPhotons = 32;
 
-enum class Stage : std::uint8_t { kEmitted, kSpecularChain, kAfterDiffuse };
-
-/// One photon on its way from a light.
-class LightPath {
+/// The photons of one run, in waves that are emitted, put in order and traced in groups.
+/// Sums are in an order that depends on the photons alone, never on threads.
+class PhotonRun {
  public:
-  LightPath(const ReferenceWorld& world, const std::vector<bool>& is_target, bool continue_after_diffuse,
-            PhotonTally& tally, Sampler sampler)
-      : world_(world), is_target_(is_target), continue_after_diffuse_(continue_after_diffuse), tally_(tally),
-        ledger_(tally.ledger), sampler_(sampler) {}
+  PhotonRun(const LightPathContext& context, const Emitter& emitter, const PhotonOrder& order)
+      : context_(context), emitter_(emitter), order_(order) {}
 
-  void trace(const Emitter& emitter) {
-    const EmittedPhoton photon = emitter.emit(sampler_);
-    if (!isFinite(photon.flux)) {
-      ++tally_.not_finite;
-      return;
-    }
-    flux_ = emitted_ = photon.flux;
-    ledger_.emitted += dvec3(flux_);
-    if (flux_ == vec3(0.0F)) return;
-    state_.ray = Ray{photon.origin, photon.dir};
-    state_.interior = emitter.interior();
-    for (int bounce = 0;; ++bounce) {
-      if (bounce == world_.options.max_bounces) {
-        lose(LossReason::kBounceLimit, flux_);
-        break;
+  /// @param sampler_of  the numbers of a photon by its index
+  template <class SamplerOf>
+  void traceWave(std::uint32_t begin, std::uint32_t end, SamplerOf&& sampler_of) {
+    photons_.clear();
+    keys_.clear();
+    for (std::uint32_t i = begin; i < end; ++i) emit(sampler_of(i));
+    const std::vector<std::uint32_t> order = PhotonOrder::sort(keys_);
+    for (std::size_t first = 0; first < order.size(); first += kGroupPhotons) {
+      group_.clear();
+      for (std::size_t i = first; i < std::min(first + kGroupPhotons, order.size()); ++i) {
+        const auto& [photon, sampler] = photons_[order[i]];
+        group_.emplace_back(context_, emitter_, photon, sampler);
       }
-      if (!advance(bounce) || !scatter(bounce)) break;
+      traceGroup();
     }
-    ledger_.roulette_squared += roulette_ * roulette_;
-    ledger_.roulette += roulette_;
   }
 
  private:
-  bool accounted() const { return stage_ != Stage::kAfterDiffuse; }
-  void lose(LossReason reason, vec3 flux) {
-    if (accounted()) ledger_.lost[static_cast<std::size_t>(reason)] += dvec3(flux);
-  }
-
-  /// To the next surface. @return false if the photon ends
-  bool advance(int bounce) {
-    world_.walker.advance(state_, sampler_, encounter_, bounce == 0);
-    tally_.rays += encounter_.rays;
-    const vec3 kept = flux_ * encounter_.transmittance;
-    if (accounted()) ledger_.absorbed += dvec3(flux_) - dvec3(kept);
-    flux_ = kept;
-    if (encounter_.overflow) {
-      lose(LossReason::kInteriorOverflow, flux_);
-      return false;
-    }
-    if (!encounter_.hit) {
-      if (accounted()) (stage_ == Stage::kEmitted ? ledger_.missed : ledger_.escaped) += dvec3(flux_);
-      return false;
-    }
-    return flux_ != vec3(0.0F);
-  }
-
-  /// @return false if the photon ends
-  bool scatter(int bounce) {
-    if (stage_ == Stage::kEmitted && !is_target_[encounter_.point.instance] && !encounter_.material->is_pane) {
-      ledger_.blocked += dvec3(flux_);
-      return false;
-    }
-    const vec3 wo = -state_.ray.dir;
-    const vec3 weight = drawWavelength(state_, encounter_.boundary, world_.options.spectral, sampler_);
-    if (accounted()) roulette_ += dvec3(flux_) - dvec3(flux_ * weight);
-    flux_ *= weight;
-    const float ior_from = iorOf(encounter_.boundary.from, state_.wavelength_nm);
-    const float ior_to = iorOf(encounter_.boundary.to, state_.wavelength_nm);
-    const Bsdf bsdf(*encounter_.material, encounter_.point, wo, ior_from, ior_to, world_.options.specular_alpha);
-    // The interface's share goes on as S; the rest is the base's (or, without a base, is absorbed).
-    const vec3 specular_share = bsdf.hasSpecular() ? bsdf.interfaceAlbedo() : vec3(0.0F);
-    const vec3 rest = flux_ * (1.0F - specular_share);
-    if (!bsdf.hasDiffuse()) {
-      if (accounted()) ledger_.absorbed += dvec3(rest);
-    } else if (stage_ == Stage::kEmitted) {
-      ledger_.blocked += dvec3(rest);
-    } else {
-      if (stage_ == Stage::kSpecularChain) ledger_.deposited += dvec3(rest);
-      connectToCamera(bsdf, wo);
-    }
-    return continueWith(bsdf, specular_share, wo, bounce);
-  }
-
-  bool continueWith(const Bsdf& bsdf, vec3 specular_share, vec3 wo, int bounce) {
-    const float p_specular = bsdf.specularProbability();
-    const bool diffuse_allowed = continue_after_diffuse_ && stage_ != Stage::kEmitted && bsdf.hasDiffuse();
-    const vec3 specular_flux = flux_ * specular_share;
-    const bool must_choose = bsdf.hasDiffuse();
-    const bool specular = p_specular > 0.0F && (!must_choose || sampler_.next1D() < p_specular);
-    const float p_class = !must_choose ? 1.0F : specular ? p_specular : 1.0F - p_specular;
-    if (!specular) {
-      if (accounted()) roulette_ += dvec3(specular_flux);
-      if (!diffuse_allowed || p_class <= 0.0F) return false;
-      return scatterDiffuse(bsdf, p_class, wo, bounce);
-    }
-    const vec3 carried = specular_flux / p_class;
-    if (accounted()) roulette_ += dvec3(specular_flux) - dvec3(carried);
-    const vec2 u = bsdf.isEvaluable(EventClass::kSpecular) ? sampler_.next2D() : vec2(0.0F);
-    const auto s = bsdf.sample(EventClass::kSpecular, u, sampler_.next1D(), Transport::kFlux);
-    const bool smooth = encounter_.material->alpha == 0.0F;
-    if (!s) {
-      lose(smooth ? LossReason::kShadingNormal : LossReason::kMicrofacet, carried);
-      return false;
-    }
-    const vec3 out = flux_ * s->weight / p_class;
-    if (accounted()) {
-      const dvec3 difference = dvec3(carried) - dvec3(out);
-      if (smooth)
-        roulette_ += difference;
-      else
-        ledger_.lost[static_cast<std::size_t>(LossReason::kMicrofacet)] += difference;
-    }
-    flux_ = out;
-    if (!s->pass && stage_ == Stage::kEmitted) stage_ = Stage::kSpecularChain;
-    return leave(*s, bounce);
-  }
-
-  bool scatterDiffuse(const Bsdf& bsdf, float p_class, vec3 wo, int bounce) {
-    const vec2 u = sampler_.next2D();
-    const auto s = bsdf.sample(EventClass::kDiffuse, u, sampler_.next1D(), Transport::kFlux);
-    stage_ = Stage::kAfterDiffuse;
-    if (!s) return false;
-    // Flux arrives on the true surface and leaves from it; the BSDF counts both cosines on the shaded one.
-    const float leaving = bsdf.shadingCosineRatio(s->dir);
-    if (leaving <= 0.0F) return false;
-    flux_ *= s->weight * (bsdf.shadingCosineRatio(wo) / leaving / p_class);
-    return leave(*s, bounce);
-  }
-
-  bool leave(const BsdfSample& s, int bounce) {
-    if (!isFinite(flux_)) {
-      ++tally_.not_finite;
-      return false;
-    }
-    if (encounter_.material->is_solid) {
-      const std::uint32_t solid = world_.scene.solidOf(encounter_.point.instance);
-      const Material& material = *encounter_.material->source;
-      const bool entering = encounter_.boundary.entering;
-      if (!(s.transmitted ? crossInterface(state_.interior, solid, material, entering)
-                          : reflectInside(state_.interior, solid, material, entering))) {
-        lose(LossReason::kInteriorOverflow, flux_);
-        return false;
-      }
-    }
-    state_.ray = Ray{offsetOrigin(encounter_.point, s.dir), s.dir};
-    return bounce < kRouletteStart || survives();
-  }
-
-  bool survives() {
-    const float left = maxComponent(glm::abs(flux_)) / maxComponent(glm::abs(emitted_));
-    // Below one in ten of what it began with, a photon is hardly worth its rays.
-    const float q = std::min(10.0F * left, 1.0F);
-    if (q >= 1.0F) return true;
-    const bool alive = sampler_.next1D() < q;
-    const vec3 kept = alive ? flux_ / q : vec3(0.0F);
-    if (accounted()) roulette_ += dvec3(flux_) - dvec3(kept);
-    flux_ = kept;
-    return alive;
-  }
-
-  void connectToCamera(const Bsdf& bsdf, vec3 wo) {
-    const auto c = world_.camera_model.connect(encounter_.point.position);
-    if (!c) return;
-    const BsdfValue value = bsdf.evaluate(EventClass::kDiffuse, c->dir, Transport::kFlux);
-    if (maxComponent(value.f) <= 0.0F) return;
-    const float cos_camera = dot(c->dir, encounter_.point.normal_geometric);
-    const bool same_side = (cos_camera > 0.0F) == encounter_.boundary.entering;
-    const Material* medium = same_side ? encounter_.boundary.from : encounter_.boundary.to;
-    const Ray line{offsetOrigin(encounter_.point, c->dir), c->dir, c->distance};
-    const vec3 visible = world_.walker.visibility(line, medium, tally_.rays);
-    if (maxComponent(visible) <= 0.0F) return;
-    const float scale = std::abs(cos_camera) * bsdf.shadingCosineRatio(wo) * c->importance;
-    const vec3 irradiance = same_side ? flux_ * visible * scale : vec3(0.0F);
-    const vec3 radiance = flux_ * visible * value.f * scale;
-    if (!isFinite(radiance) || !isFinite(irradiance)) {
-      ++tally_.not_finite;
+  void emit(Sampler sampler) {
+    const EmittedPhoton photon = emitter_.emit(sampler);
+    if (!isFinite(photon.flux)) {
+      ++context_.tally.not_finite;
       return;
     }
-    tally_.splats.push_back({static_cast<std::uint32_t>(c->y * world_.camera_model.width() + c->x),
-                             stage_ == Stage::kSpecularChain, radiance, irradiance});
+    context_.tally.ledger.emitted += dvec3(photon.flux);
+    if (photon.flux == vec3(0.0F)) return;
+    photons_.push_back({photon, sampler});
+    keys_.push_back(order_.keyOf(photon.origin, photon.dir));
   }
 
-  const ReferenceWorld& world_;
-  const std::vector<bool>& is_target_;
-  bool continue_after_diffuse_;
-  PhotonTally& tally_;
-  Ledger& ledger_;
-  Sampler sampler_;
-  PathState state_;
-  Encounter encounter_;
-  Stage stage_ = Stage::kEmitted;
-  vec3 flux_{0.0F}, emitted_{0.0F};
-  dvec3 roulette_{0.0};
+  void traceGroup() {
+    live_.clear();
+    for (LightPath& path : group_)
+      if (path.alive()) live_.push_back(&path);
+    while (!live_.empty()) {
+      hits_.resize(live_.size());
+      rays_.clear();
+      for (const LightPath* path : live_) rays_.push_back(&path->ray());
+      for (std::size_t i = 0; i < rays_.size(); i += TraceScene::kPacketSize)
+        context_.world.scene.intersectPacket(
+            std::span(rays_).subspan(i, std::min(TraceScene::kPacketSize, rays_.size() - i)), &hits_[i]);
+      for (std::size_t i = 0; i < live_.size(); ++i) live_[i]->arrive(hits_[i]);
+      std::erase_if(live_, [](const LightPath* path) { return !path->alive(); });
+    }
+  }
+
+  const LightPathContext& context_;
+  const Emitter& emitter_;
+  const PhotonOrder& order_;
+  struct Emitted {
+    EmittedPhoton photon;
+    Sampler sampler;
+  };
+  std::vector<Emitted> photons_;
+  std::vector<std::uint32_t> keys_;  ///< by photon
+  std::vector<LightPath> group_;
+  std::vector<LightPath*> live_;  ///< into group_
+  std::vector<const Ray*> rays_;  ///< by live path
+  std::vector<RayHit> hits_;      ///< by live path
 };
 
 }  // namespace
@@ -212,7 +88,7 @@ LightTracer::LightTracer(const ReferenceWorld& world, bool continue_after_diffus
     : world_(world), continue_after_diffuse_(continue_after_diffuse) {
   const SceneData& data = world.scene.scene();
   for (const Instance& instance : data.instances) {
-    const Classification c = classify(data.materialOf(instance), world.options.specular_alpha);
+    const Classification c = classify(data, data.materialOf(instance), world.options.specular_alpha);
     is_target_.push_back(instance.casts && (c.is_generator || c.is_weak_generator));
   }
   targets_ = std::make_unique<EmissionTargets>(world.scene, is_target_);
@@ -233,9 +109,17 @@ std::vector<std::uint32_t> LightTracer::sharePhotons(std::uint32_t total) const 
 void LightTracer::trace(std::size_t emitter, std::uint32_t begin, std::uint32_t end, PhotonTally& tally) const {
   // Streams of pixels count up from 0; those of lights down from the top.
   const std::uint32_t stream = 0xFFFFFFFFU - static_cast<std::uint32_t>(emitter);
-  for (std::uint32_t i = begin; i < end; ++i)
-    LightPath(world_, is_target_, continue_after_diffuse_, tally, Sampler(world_.options.seed, stream, i))
-        .trace(*emitters_[emitter]);
+  const auto sampler_of = [&](std::uint32_t i) { return Sampler(world_.options.seed, stream, i); };
+  CameraConnections connections(world_.walker, tally);
+  const LightPathContext context{world_, is_target_, continue_after_diffuse_, tally, connections};
+  const PhotonOrder order(targets_->bounds());
+  PhotonRun run(context, *emitters_[emitter], order);
+  for (std::uint32_t i = begin; i < end;) {
+    const std::uint32_t wave = std::min(kWavePhotons, end - i);
+    run.traceWave(i, i + wave, sampler_of);
+    i += wave;
+  }
+  connections.flush();
   tally.ledger.emitted_count += end - begin;
 }
 

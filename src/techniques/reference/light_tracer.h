@@ -11,26 +11,10 @@
 #include <span>
 #include <vector>
 
-#include "techniques/reference/film.h"
+#include "techniques/reference/photon_tally.h"
 #include "techniques/reference/world.h"
 
 namespace nephroid {
-
-/// What one photon adds to one pixel.
-struct Splat {
-  std::uint32_t pixel;
-  bool is_caustic;   ///< else indirect
-  vec3 radiance;     ///< W/m²/sr × emitted count
-  vec3 irradiance;   ///< W/m² × emitted count
-};
-
-/// What a run of photons left behind.
-struct PhotonTally {
-  Ledger ledger;  ///< sums of flux × emitted count
-  std::uint64_t rays = 0;
-  std::uint64_t not_finite = 0;
-  std::vector<Splat> splats;
-};
 
 class LightTracer {
  public:

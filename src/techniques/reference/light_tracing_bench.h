@@ -19,6 +19,7 @@ struct LightTracingMeasurement {
 
 /// @param photons      per repetition; their rays are held in memory, 28 bytes each
 /// @param repetitions  after one of each that is not counted
+/// @return             without measurements if no light reaches anything that bends it
 LightTracingMeasurement measureLightTracing(const SceneData& scene, const Camera& camera, std::uint32_t photons,
                                             int repetitions);
 

@@ -1,4 +1,4 @@
-#include "trace/texture.h"
+#include "scene/texture.h"
 
 #include <gtest/gtest.h>
 

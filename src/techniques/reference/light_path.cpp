@@ -1,0 +1,206 @@
+#include "techniques/reference/light_path.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace nephroid {
+namespace {
+
+/// Events before Russian roulette may end a photon: it only ends what absorption has made weak.
+constexpr int kRouletteStart = 8;
+
+}  // namespace
+
+void CameraConnections::flush() {
+  if (count_ == 0) return;
+  std::array<vec3, TraceScene::kPacketSize> visible;
+  walker_.visibility({lines_.data(), count_}, visible.data(), tally_.rays);
+  for (std::size_t i = 0; i < count_; ++i) {
+    if (maxComponent(visible[i]) <= 0.0F) continue;
+    Splat& splat = splats_[i];
+    splat.radiance *= visible[i];
+    splat.irradiance *= visible[i];
+    if (isFinite(splat.radiance) && isFinite(splat.irradiance))
+      tally_.splats.push_back(splat);
+    else
+      ++tally_.not_finite;
+  }
+  count_ = 0;
+}
+
+LightPath::LightPath(const LightPathContext& context, const Emitter& emitter, const EmittedPhoton& photon,
+                     Sampler sampler)
+    : context_(&context),
+      ledger_(&context.tally.ledger),
+      sampler_(sampler),
+      state_{Ray{photon.origin, photon.dir}, emitter.interior()},
+      flux_(photon.flux),
+      emitted_(photon.flux) {
+  depart();
+}
+
+void LightPath::arrive(const RayHit& hit) {
+  const Walker& walker = context_->world.walker;
+  if (!walker.arrive(state_, sampler_, encounter_, hit)) return;
+  context_->tally.rays += encounter_.rays;
+  alive_ = endStep() && scatter();
+  ++bounce_;
+  if (alive_) depart();
+  if (alive_) return;
+  ledger_->roulette_squared += roulette_ * roulette_;
+  ledger_->roulette += roulette_;
+}
+
+void LightPath::depart() {
+  Walker::depart(encounter_);
+  if (bounce_ < context_->world.options.max_bounces) return;
+  lose(LossReason::kBounceLimit, flux_);
+  alive_ = false;
+}
+
+void LightPath::lose(LossReason reason, vec3 flux) {
+  if (accounted()) ledger_->lost[static_cast<std::size_t>(reason)] += dvec3(flux);
+}
+
+bool LightPath::endStep() {
+  if (encounter_.transmittance != vec3(1.0F)) {
+    const vec3 kept = flux_ * encounter_.transmittance;
+    if (accounted()) ledger_->absorbed += dvec3(flux_) - dvec3(kept);
+    flux_ = kept;
+  }
+  if (encounter_.overflow) {
+    lose(LossReason::kInteriorOverflow, flux_);
+    return false;
+  }
+  if (!encounter_.hit) {
+    if (accounted()) (stage_ == Stage::kEmitted ? ledger_->missed : ledger_->escaped) += dvec3(flux_);
+    return false;
+  }
+  return flux_ != vec3(0.0F);
+}
+
+bool LightPath::scatter() {
+  const ReferenceOptions& options = context_->world.options;
+  if (stage_ == Stage::kEmitted && !context_->is_target[encounter_.point.instance] && !encounter_.material->is_pane) {
+    ledger_->blocked += dvec3(flux_);
+    return false;
+  }
+  const vec3 wo = -state_.ray.dir;
+  const vec3 weight = drawWavelength(state_, encounter_.boundary, options.spectral, sampler_);
+  if (accounted()) roulette_ += dvec3(flux_) - dvec3(flux_ * weight);
+  flux_ *= weight;
+  const float ior_from = iorOf(encounter_.boundary.from, state_.wavelength_nm);
+  const float ior_to = iorOf(encounter_.boundary.to, state_.wavelength_nm);
+  const Bsdf bsdf(*encounter_.material, encounter_.point, wo, ior_from, ior_to, options.specular_alpha);
+  // The interface's share goes on as S; the rest is the base's (or, without a base, is absorbed).
+  const vec3 specular_share = bsdf.hasSpecular() ? bsdf.interfaceAlbedo() : vec3(0.0F);
+  const vec3 rest = flux_ * (1.0F - specular_share);
+  if (!bsdf.hasDiffuse()) {
+    if (accounted()) ledger_->absorbed += dvec3(rest);
+  } else if (stage_ == Stage::kEmitted) {
+    ledger_->blocked += dvec3(rest);
+  } else {
+    if (stage_ == Stage::kSpecularChain) ledger_->deposited += dvec3(rest);
+    connectToCamera(bsdf, wo);
+  }
+  return continueWith(bsdf, specular_share, wo);
+}
+
+bool LightPath::continueWith(const Bsdf& bsdf, vec3 specular_share, vec3 wo) {
+  const float p_specular = bsdf.specularProbability();
+  const bool diffuse_allowed = context_->continue_after_diffuse && stage_ != Stage::kEmitted && bsdf.hasDiffuse();
+  const vec3 specular_flux = flux_ * specular_share;
+  const bool must_choose = bsdf.hasDiffuse();
+  const bool specular = p_specular > 0.0F && (!must_choose || sampler_.next1D() < p_specular);
+  const float p_class = !must_choose ? 1.0F : specular ? p_specular : 1.0F - p_specular;
+  if (!specular) {
+    if (accounted()) roulette_ += dvec3(specular_flux);
+    if (!diffuse_allowed || p_class <= 0.0F) return false;
+    return scatterDiffuse(bsdf, p_class, wo);
+  }
+  const vec3 carried = specular_flux / p_class;
+  if (accounted()) roulette_ += dvec3(specular_flux) - dvec3(carried);
+  return scatterSpecular(bsdf, carried, p_class);
+}
+
+bool LightPath::scatterSpecular(const Bsdf& bsdf, vec3 carried, float p_class) {
+  const vec2 u = bsdf.isEvaluable(EventClass::kSpecular) ? sampler_.next2D() : vec2(0.0F);
+  const auto s = bsdf.sample(EventClass::kSpecular, u, sampler_.next1D(), Transport::kFlux);
+  const bool smooth = encounter_.material->alpha == 0.0F;
+  if (!s) {
+    lose(smooth ? LossReason::kShadingNormal : LossReason::kMicrofacet, carried);
+    return false;
+  }
+  const vec3 out = flux_ * s->weight / p_class;
+  if (accounted()) {
+    const dvec3 difference = dvec3(carried) - dvec3(out);
+    if (smooth)
+      roulette_ += difference;
+    else
+      ledger_->lost[static_cast<std::size_t>(LossReason::kMicrofacet)] += difference;
+  }
+  flux_ = out;
+  if (!s->pass && stage_ == Stage::kEmitted) stage_ = Stage::kSpecularChain;
+  return leave(*s);
+}
+
+bool LightPath::scatterDiffuse(const Bsdf& bsdf, float p_class, vec3 wo) {
+  const vec2 u = sampler_.next2D();
+  const auto s = bsdf.sample(EventClass::kDiffuse, u, sampler_.next1D(), Transport::kFlux);
+  stage_ = Stage::kAfterDiffuse;
+  if (!s) return false;
+  // Flux arrives on the true surface and leaves from it; the BSDF counts both cosines on the shaded one.
+  const float leaving = bsdf.shadingCosineRatio(s->dir);
+  if (leaving <= 0.0F) return false;
+  flux_ *= s->weight * (bsdf.shadingCosineRatio(wo) / leaving / p_class);
+  return leave(*s);
+}
+
+bool LightPath::leave(const BsdfSample& s) {
+  if (!isFinite(flux_)) {
+    ++context_->tally.not_finite;
+    return false;
+  }
+  if (encounter_.material->is_solid) {
+    const std::uint32_t solid = context_->world.scene.solidOf(encounter_.point.instance);
+    const Material& material = *encounter_.material->source;
+    const bool entering = encounter_.boundary.entering;
+    if (!(s.transmitted ? crossInterface(state_.interior, solid, material, entering)
+                        : reflectInside(state_.interior, solid, material, entering))) {
+      lose(LossReason::kInteriorOverflow, flux_);
+      return false;
+    }
+  }
+  state_.ray = Ray{offsetOrigin(encounter_.point, s.dir), s.dir};
+  return bounce_ < kRouletteStart || survives();
+}
+
+bool LightPath::survives() {
+  const float left = maxComponent(glm::abs(flux_)) / maxComponent(glm::abs(emitted_));
+  // Below one in ten of what it began with, a photon is hardly worth its rays.
+  const float q = std::min(10.0F * left, 1.0F);
+  if (q >= 1.0F) return true;
+  const bool alive = sampler_.next1D() < q;
+  const vec3 kept = alive ? flux_ / q : vec3(0.0F);
+  if (accounted()) roulette_ += dvec3(flux_) - dvec3(kept);
+  flux_ = kept;
+  return alive;
+}
+
+void LightPath::connectToCamera(const Bsdf& bsdf, vec3 wo) {
+  const CameraModel& camera = context_->world.camera_model;
+  const auto c = camera.connect(encounter_.point.position);
+  if (!c) return;
+  const BsdfValue value = bsdf.evaluate(EventClass::kDiffuse, c->dir, Transport::kFlux);
+  if (maxComponent(value.f) <= 0.0F) return;
+  const float cos_camera = dot(c->dir, encounter_.point.normal_geometric);
+  const bool same_side = (cos_camera > 0.0F) == encounter_.boundary.entering;
+  const Material* medium = same_side ? encounter_.boundary.from : encounter_.boundary.to;
+  const Ray line{offsetOrigin(encounter_.point, c->dir), c->dir, c->distance};
+  const float scale = std::abs(cos_camera) * bsdf.shadingCosineRatio(wo) * c->importance;
+  const vec3 irradiance = same_side ? flux_ * scale : vec3(0.0F);
+  context_->connections.add({line, medium}, {static_cast<std::uint32_t>(c->y * camera.width() + c->x),
+                                             stage_ == Stage::kSpecularChain, flux_ * value.f * scale, irradiance});
+}
+
+}  // namespace nephroid

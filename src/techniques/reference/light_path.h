@@ -1,0 +1,79 @@
+// One photon on its way from a light, and what it sends to the camera.
+#pragma once
+
+#include <array>
+#include <vector>
+
+#include "techniques/reference/photon_tally.h"
+#include "techniques/reference/world.h"
+#include "trace/bsdf.h"
+
+namespace nephroid {
+
+/// Splats that wait for their lines to the camera to be traced, several at once.
+class CameraConnections {
+ public:
+  CameraConnections(const Walker& walker, PhotonTally& tally) : walker_(walker), tally_(tally) {}
+  /// @param splat  as if nothing were between
+  void add(const Sightline& line, const Splat& splat) {
+    lines_[count_] = line;
+    splats_[count_] = splat;
+    if (++count_ == TraceScene::kPacketSize) flush();
+  }
+  void flush();
+
+ private:
+  const Walker& walker_;
+  PhotonTally& tally_;
+  std::size_t count_ = 0;
+  std::array<Sightline, TraceScene::kPacketSize> lines_;
+  std::array<Splat, TraceScene::kPacketSize> splats_;
+};
+
+/// What the photons of one run share.
+struct LightPathContext {
+  const ReferenceWorld& world;
+  const std::vector<bool>& is_target;  ///< by instance
+  bool continue_after_diffuse;
+  PhotonTally& tally;
+  CameraConnections& connections;
+};
+
+/// Trace `ray()` and tell `arrive` what it met, again and again, until that says the photon has ended.
+class LightPath {
+ public:
+  LightPath(const LightPathContext& context, const Emitter& emitter, const EmittedPhoton& photon, Sampler sampler);
+
+  bool alive() const { return alive_; }
+  const Ray& ray() const { return state_.ray; }
+  void arrive(const RayHit& hit);
+
+ private:
+  enum class Stage : std::uint8_t { kEmitted, kSpecularChain, kAfterDiffuse };
+
+  bool accounted() const { return stage_ != Stage::kAfterDiffuse; }
+  void lose(LossReason reason, vec3 flux);
+  void depart();
+  // All of these say false if the photon ends.
+  bool endStep();
+  bool scatter();
+  bool continueWith(const Bsdf& bsdf, vec3 specular_share, vec3 wo);
+  bool scatterSpecular(const Bsdf& bsdf, vec3 carried, float p_class);
+  bool scatterDiffuse(const Bsdf& bsdf, float p_class, vec3 wo);
+  bool leave(const BsdfSample& s);
+  bool survives();
+  void connectToCamera(const Bsdf& bsdf, vec3 wo);
+
+  const LightPathContext* context_;
+  Ledger* ledger_;
+  Sampler sampler_;
+  PathState state_;
+  Encounter encounter_;
+  Stage stage_ = Stage::kEmitted;
+  bool alive_ = true;
+  int bounce_ = 0;
+  vec3 flux_, emitted_;
+  dvec3 roulette_{0.0};
+};
+
+}  // namespace nephroid
