@@ -73,12 +73,12 @@ inline void intersectClosest8(const int* valid, RTCScene scene, RTCRayHit8& ray_
 #if NEPHROID_EMBREE_MAJOR >= 4
   RTCIntersectArguments arguments;
   rtcInitIntersectArguments(&arguments);
-  arguments.flags = RTC_RAY_QUERY_FLAG_COHERENT;
+  arguments.flags = RTC_RAY_QUERY_FLAG_INCOHERENT;
   rtcIntersect8(valid, scene, &ray_hits, &arguments);
 #else
   RTCIntersectContext context;
   rtcInitIntersectContext(&context);
-  context.flags = RTC_INTERSECT_CONTEXT_FLAG_COHERENT;
+  context.flags = RTC_INTERSECT_CONTEXT_FLAG_INCOHERENT;
   rtcIntersect8(valid, scene, &context, &ray_hits);
 #endif
 }
@@ -88,12 +88,12 @@ inline void intersectAny8(const int* valid, RTCScene scene, RTCRay8& rays) {
 #if NEPHROID_EMBREE_MAJOR >= 4
   RTCOccludedArguments arguments;
   rtcInitOccludedArguments(&arguments);
-  arguments.flags = RTC_RAY_QUERY_FLAG_COHERENT;
+  arguments.flags = RTC_RAY_QUERY_FLAG_INCOHERENT;
   rtcOccluded8(valid, scene, &rays, &arguments);
 #else
   RTCIntersectContext context;
   rtcInitIntersectContext(&context);
-  context.flags = RTC_INTERSECT_CONTEXT_FLAG_COHERENT;
+  context.flags = RTC_INTERSECT_CONTEXT_FLAG_INCOHERENT;
   rtcOccluded8(valid, scene, &context, &rays);
 #endif
 }

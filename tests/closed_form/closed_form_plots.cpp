@@ -3,8 +3,7 @@
 //
 // Usage: closed_form_plots FOLDER. Writes FOLDER/{ball_before,ball_behind,wave_shallow,wave_deep,ring,mirror,blur}.png
 // and prints each relative L1. In a plot the formula is the dark line, the renderer the orange one beneath it; the
-// vertical axis goes from 0 to the highest value shown, capped at four times the mean so that folds do not flatten the
-// rest.
+// vertical axis is the square root of irradiance, from 0 to the highest.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -56,7 +55,8 @@ void drawCurve(Image& canvas, int left, const std::vector<double>& values, doubl
     const double clamped = std::clamp(at, 0.0, static_cast<double>(values.size() - 1));
     const auto i = std::min(static_cast<std::size_t>(clamped), values.size() - 2);
     const double value = values[i] + (clamped - static_cast<double>(i)) * (values[i + 1] - values[i]);
-    const int row = std::clamp(static_cast<int>((1.0 - value / top) * (kPanel - 8)) + 4, 0, kPanel - 1);
+    const int row =
+        std::clamp(static_cast<int>((1.0 - std::sqrt(std::max(value, 0.0) / top)) * (kPanel - 8)) + 4, 0, kPanel - 1);
     const int from = last < 0 ? row : std::min(row, last), to = last < 0 ? row : std::max(row, last);
     for (int y = from - thickness; y <= to + thickness; ++y)
       if (y >= 0 && y < kPanel) canvas.setRgb(left + x, y, color);
@@ -67,27 +67,21 @@ void drawCurve(Image& canvas, int left, const std::vector<double>& values, doubl
 void drawPlot(Image& canvas, int left, const Comparison& c) {
   for (int y = 0; y < kPanel; ++y)
     for (int x = 0; x < kPlot; ++x) canvas.setRgb(left + x, y, vec3(y % 43 == 4 || x % 75 == 0 ? 0.8F : 1.0F));
-  const auto& p = c.predicted_profile;
-  const double mean = std::accumulate(p.begin(), p.end(), 0.0) / static_cast<double>(p.size());
-  const double top = std::min(1.05 * *std::max_element(p.begin(), p.end()), 4.0 * mean);
+  const double top = 1.05 * *std::max_element(c.predicted_profile.begin(), c.predicted_profile.end());
   drawCurve(canvas, left, c.measured_profile, top, vec3(1.0F, 0.35F, 0.05F), 1);
   drawCurve(canvas, left, c.predicted_profile, top, vec3(0.02F, 0.03F, 0.08F), 0);
 }
 
-/// The mean of what is lit is shown as 30 % of white.
-float chooseScale(const Image& predicted) {
-  double sum = 0.0;
-  std::size_t lit = 0;
-  for (std::size_t i = 0; i < predicted.pixels.size(); i += static_cast<std::size_t>(predicted.channels)) {
-    sum += static_cast<double>(predicted.pixels[i]);
-    lit += predicted.pixels[i] > 0.0F ? 1 : 0;
-  }
-  return static_cast<float>(0.3 * static_cast<double>(lit) / std::max(sum, 1e-30));
+/// The brightest of the profile is shown at twice white and its mean at 10 % of white, both as well as one factor can.
+float chooseScale(const std::vector<double>& profile) {
+  const double mean = std::accumulate(profile.begin(), profile.end(), 0.0) / static_cast<double>(profile.size());
+  const double highest = *std::max_element(profile.begin(), profile.end());
+  return static_cast<float>(std::sqrt(2.0 / highest * 0.1 / mean));
 }
 
 void draw(const Comparison& c, const std::filesystem::path& folder) {
   Image canvas(2 * (kPanel + kGap) + kPlot, kPanel, 3, 1.0F);
-  const float scale = chooseScale(c.predicted);
+  const float scale = chooseScale(c.predicted_profile);
   drawPanel(canvas, 0, c.rendered, scale);
   drawPanel(canvas, kPanel + kGap, c.predicted, scale);
   drawPlot(canvas, 2 * (kPanel + kGap), c);

@@ -100,7 +100,11 @@ bool LightPath::scatter() {
   } else if (stage_ == Stage::kEmitted) {
     ledger_->blocked += dvec3(rest);
   } else {
-    if (stage_ == Stage::kSpecularChain) ledger_->deposited += dvec3(rest);
+    if (stage_ == Stage::kSpecularChain) {
+      ledger_->deposited += dvec3(rest);
+      if (context_->keep_deposits)
+        context_->tally.deposits.push_back({encounter_.point.position, state_.ray.dir, flux_});
+    }
     connectToCamera(bsdf, wo);
   }
   return continueWith(bsdf, specular_share, wo);

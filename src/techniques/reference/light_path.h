@@ -35,6 +35,7 @@ struct LightPathContext {
   const ReferenceWorld& world;
   const std::vector<bool>& is_target;  ///< by instance
   bool continue_after_diffuse;
+  bool keep_deposits;
   PhotonTally& tally;
   CameraConnections& connections;
 };

@@ -84,8 +84,8 @@ class PhotonRun {
 
 }  // namespace
 
-LightTracer::LightTracer(const ReferenceWorld& world, bool continue_after_diffuse)
-    : world_(world), continue_after_diffuse_(continue_after_diffuse) {
+LightTracer::LightTracer(const ReferenceWorld& world, bool continue_after_diffuse, bool keep_deposits)
+    : world_(world), continue_after_diffuse_(continue_after_diffuse), keep_deposits_(keep_deposits) {
   const SceneData& data = world.scene.scene();
   for (const Instance& instance : data.instances) {
     const Classification c = classify(data, data.materialOf(instance), world.options.specular_alpha);
@@ -111,7 +111,7 @@ void LightTracer::trace(std::size_t emitter, std::uint32_t begin, std::uint32_t 
   const std::uint32_t stream = 0xFFFFFFFFU - static_cast<std::uint32_t>(emitter);
   const auto sampler_of = [&](std::uint32_t i) { return Sampler(world_.options.seed, stream, i); };
   CameraConnections connections(world_.walker, tally);
-  const LightPathContext context{world_, is_target_, continue_after_diffuse_, tally, connections};
+  const LightPathContext context{world_, is_target_, continue_after_diffuse_, keep_deposits_, tally, connections};
   const PhotonOrder order(targets_->bounds());
   PhotonRun run(context, *emitters_[emitter], order);
   for (std::uint32_t i = begin; i < end;) {

@@ -19,7 +19,8 @@ namespace nephroid {
 class LightTracer {
  public:
   /// @param continue_after_diffuse  also trace what a caustic lights in turn
-  LightTracer(const ReferenceWorld& world, bool continue_after_diffuse);
+  /// @param keep_deposits           list where caustic photons end, for those who look at it through glass
+  LightTracer(const ReferenceWorld& world, bool continue_after_diffuse, bool keep_deposits = false);
 
   std::span<const std::unique_ptr<Emitter>> emitters() const { return emitters_; }
   /// Photons of a batch for each emitter, by flux, at least one each; sums to `total` or a little more.
@@ -30,7 +31,7 @@ class LightTracer {
 
  private:
   const ReferenceWorld& world_;
-  bool continue_after_diffuse_;
+  bool continue_after_diffuse_, keep_deposits_;
   std::vector<bool> is_target_;
   std::unique_ptr<EmissionTargets> targets_;
   std::vector<std::unique_ptr<Emitter>> emitters_;

@@ -51,6 +51,8 @@ class PathClass {
   }
   /// L S⁺ D S⁺ E: a caustic seen in a mirror or through glass.
   bool isSpecularCaustic() const { return stage_ == Stage::kLightSide; }
+  /// Nothing but mirrors and glass so far, and at least one.
+  bool isEyeSpecular() const { return stage_ == Stage::kEyeSide; }
   /// L S … D E: found by light tracing, whose photons first meet something specular and end on what the eye sees.
   bool isLightTraced() const { return firstIsDiffuse() && last_specular_; }
 

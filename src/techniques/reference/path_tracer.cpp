@@ -13,6 +13,9 @@ constexpr int kRouletteStart = 6;
 /// Shadow rays end this far before the light, relative to its distance: the light's own surface must not block it.
 constexpr float kShadowEnd = 1.0F - 1e-4F;
 
+/// Height of the kernel's disc over its radius: thin enough not to look around corners, thick enough for curved ground.
+constexpr float kKernelFlatness = 0.3F;
+
 float powerHeuristic(float pdf, float other) {
   if (!std::isfinite(pdf)) return 1.0F;
   const float a = pdf * pdf, b = other * other;
@@ -22,9 +25,9 @@ float powerHeuristic(float pdf, float other) {
 /// One path on its way from the eye.
 class EyePath {
  public:
-  EyePath(const ReferenceWorld& world, const LayerNeeds& needs, Film& film, PathCounters& counters, std::size_t pixel,
-          Sampler sampler)
-      : world_(world), needs_(needs), film_(film), counters_(counters), pixel_(pixel), sampler_(sampler) {}
+  EyePath(const ReferenceWorld& world, const LayerNeeds& needs, const PhotonGrid* caustics, Film& film,
+          PathCounters& counters, std::size_t pixel, Sampler sampler)
+      : world_(world), needs_(needs), caustics_(caustics), film_(film), counters_(counters), pixel_(pixel), sampler_(sampler) {}
 
   void trace(vec2 film_position) {
     state_.ray = world_.camera_model.rayThrough(film_position);
@@ -69,7 +72,24 @@ class EyePath {
     const Bsdf bsdf(*encounter_.material, encounter_.point, wo, ior_from, ior_to, world_.options.specular_alpha);
     for (const EventClass c : {EventClass::kSpecular, EventClass::kDiffuse})
       if (bsdf.isEvaluable(c) && isWanted(class_.with(c))) connectToLight(bsdf, c);
+    if (caustics_ && class_.isEyeSpecular() && bsdf.hasDiffuse()) gatherCaustic(bsdf);
     return sampleNext(bsdf);
+  }
+
+  /// Density of photons about the point, by a disc on its plane.
+  void gatherCaustic(const Bsdf& bsdf) {
+    const SurfacePoint& point = encounter_.point;
+    const float radius = caustics_->radius();
+    vec3 radiance(0.0F);
+    caustics_->visitNear(point.position, [&](const GridPhoton& photon) {
+      const vec3 wi = -photon.dir;
+      const float off_plane = std::abs(dot(photon.position - point.position, point.normal_geometric));
+      // A photon of another surface nearby would leak light around edges.
+      if (off_plane > kKernelFlatness * radius) return;
+      radiance += photon.flux * bsdf.evaluate(EventClass::kDiffuse, wi, Transport::kRadiance).f * bsdf.shadingCosineRatio(wi);
+    });
+    add(class_.with(EventClass::kDiffuse).with(EventClass::kSpecular), throughput_ * radiance / (kPi * radius * radius),
+        vec3(0.0F), true);
   }
 
   /// Can a path that begins with these events still end in a layer that was asked for?
@@ -80,6 +100,7 @@ class EyePath {
   }
   bool isWanted(const PathClass& c) const {
     if (world_.options.light_tracing && c.isLightTraced()) return false;
+    if (caustics_ && c.isSpecularCaustic()) return false;
     if (c.firstIsDiffuse() && (needs_.irradiance || needs_.irradiance_caustic)) return true;
     return mayContribute(c) || c.layer() == PathLayer::kDirect;
   }
@@ -158,8 +179,9 @@ class EyePath {
     return true;
   }
 
-  void add(const PathClass& path, vec3 radiance, vec3 irradiance) {
+  void add(const PathClass& path, vec3 radiance, vec3 irradiance, bool gathered = false) {
     if (world_.options.light_tracing && path.isLightTraced()) return;
+    if (caustics_ && path.isSpecularCaustic() && !gathered) return;
     if (!isFinite(radiance) || !isFinite(irradiance)) {
       ++counters_.not_finite;
       return;
@@ -191,6 +213,7 @@ class EyePath {
 
   const ReferenceWorld& world_;
   const LayerNeeds& needs_;
+  const PhotonGrid* caustics_;
   Film& film_;
   PathCounters& counters_;
   std::size_t pixel_;
@@ -211,7 +234,7 @@ void PathTracer::tracePath(int x, int y, std::uint32_t sample, Film& film, PathC
   const auto pixel = static_cast<std::size_t>(y) * film.width + x;
   Sampler sampler(world_.options.seed, static_cast<std::uint32_t>(pixel), sample);
   const vec2 jitter = sampler.next2D();
-  EyePath path(world_, needs_, film, counters, pixel, sampler);
+  EyePath path(world_, needs_, caustics_, film, counters, pixel, sampler);
   path.trace(vec2(static_cast<float>(x), static_cast<float>(y)) + jitter);
 }
 

@@ -6,6 +6,7 @@
 
 #include "core/math.h"
 #include "techniques/ledger.h"
+#include "trace/photon_grid.h"
 
 namespace nephroid {
 
@@ -23,6 +24,7 @@ struct PhotonTally {
   std::uint64_t rays = 0;
   std::uint64_t not_finite = 0;
   std::vector<Splat> splats;
+  std::vector<GridPhoton> deposits;  ///< caustic photons where they ended, if they are kept; flux × emitted count
 };
 
 }  // namespace nephroid

@@ -26,6 +26,10 @@ constexpr std::uint32_t kChunkPhotons = 4096;
 constexpr std::uint32_t kBatchPhotons = 1U << 18;
 /// Bands of the picture into which the splats of a batch are summed in parallel.
 constexpr std::size_t kSplatBands = 16;
+/// Photons under the first kernel, were they spread evenly: fewer is noise, more is blur.
+constexpr float kGatherPhotons = 10.0F;
+/// Share of the photons that a shrinking kernel keeps; 2/3 balances bias and variance (Knaus & Zwicker 2011).
+constexpr double kRadiusAlpha = 2.0 / 3.0;
 /// Budgets when none is given: a few seconds for a picture of half a megapixel.
 constexpr std::uint64_t kDefaultSamples = 32;
 constexpr std::uint64_t kDefaultPhotons = 2'000'000;
@@ -41,9 +45,13 @@ class ReferenceRender {
       : start_(Clock::now()), settings_(settings), progress_(progress), stop_(stop), needs_(settings.layers),
         world_(scene, camera, settings.width, settings.height, makeOptions(settings)),
         film_(settings.width, settings.height, needs_), path_tracer_(world_, needs_) {
-    if (world_.options.light_tracing && needs_.lightTraced())
-      light_tracer_ = std::make_unique<LightTracer>(world_, needs_.indirect || needs_.irradiance);
+    const bool gather = settings.params.getString("specular-caustics") == "photons" && needs_.throughSpecular();
+    if ((world_.options.light_tracing && needs_.lightTraced()) || gather)
+      light_tracer_ = std::make_unique<LightTracer>(
+          world_, world_.options.light_tracing && (needs_.indirect || needs_.irradiance), gather);
     if (light_tracer_ && light_tracer_->emitters().empty()) light_tracer_.reset();
+    gather_ = gather && light_tracer_;
+    if (gather_) path_tracer_.gatherFrom(&caustics_);
     if (light_tracer_) shareLedgers();
     chooseBudgets();
     addStage("build", secondsSince(start_));
@@ -107,8 +115,9 @@ class ReferenceRender {
   void step() {
     bool photons = photonsLeft();
     if (photons && samplesLeft()) {
+      // What is gathered must have been emitted; otherwise the picture comes first.
       if (samples_done_ == 0)
-        photons = false;
+        photons = gather_ && photons_done_ == 0;
       else if (photons_done_ > 0)
         photons = settings_.seconds > 0 ? light_seconds_ <= path_seconds_
                                         : share(photons_done_, photons_budget_) <= share(samples_done_, samples_budget_);
@@ -191,6 +200,32 @@ class ReferenceRender {
       photons_done_ += chunk.end - chunk.begin;
     }
     ++batches_done_;
+    if (gather_) {
+      std::vector<GridPhoton> deposits;
+      for (Chunk& chunk : chunks) {
+        const float scale = 1.0F / static_cast<float>(batch_shares_[chunk.emitter]);
+        for (GridPhoton& photon : chunk.tally.deposits) {
+          photon.flux *= scale;
+          deposits.push_back(photon);
+        }
+      }
+      replaceCaustics(deposits);
+    }
+  }
+
+  /// The photons of the latest batch, under a kernel that shrinks from batch to batch (Knaus & Zwicker 2011, eq. 15):
+  /// the mean over batches then converges although each batch is blurred.
+  void replaceCaustics(const std::vector<GridPhoton>& deposits) {
+    if (deposits.empty()) return;
+    if (first_radius_ == 0.0F) {
+      first_radius_ = chooseGatherRadius(deposits, kGatherPhotons);
+      radius_squared_ = static_cast<double>(first_radius_) * first_radius_;
+    } else {
+      const double k = static_cast<double>(batches_done_ - 1);
+      radius_squared_ *= (k + kRadiusAlpha) / (k + 1.0);
+    }
+    const auto radius = static_cast<float>(std::sqrt(radius_squared_));
+    caustics_ = radius > 0.0F ? PhotonGrid(deposits, radius) : PhotonGrid();
   }
 
   static void sortByBand(std::vector<Splat>& splats, std::size_t band_pixels, std::vector<std::uint32_t>& band_begin) {
@@ -306,7 +341,9 @@ class ReferenceRender {
       any_delta = any_delta || (light.kind == LightKind::kSun ? light.angle_deg == 0.0F : light.radius == 0.0F);
     if (any_delta && (needs_.specular || needs_.specular_caustic))
       result.notes.emplace_back(
-          "caustics in mirrors and through glass are missing under lights without a size: give them extras.radius or extras.angle");
+          gather_ || !light_tracer_
+              ? "light of sources without a size that returns through mirrors or glass after two or more diffuse bounces is missing"
+              : "caustics in mirrors and through glass are missing under lights without a size: give them extras.radius or extras.angle");
     if (any_delta && !world_.options.light_tracing && needs_.caustic)
       result.notes.emplace_back("caustic-estimator=path finds no caustic of lights without a size");
     if (not_finite_ > 0)
@@ -334,6 +371,10 @@ class ReferenceRender {
   std::vector<Layer> geometry_;
   std::vector<StageTime> stages_;
   std::vector<bool> partial_rows_;
+  bool gather_ = false;
+  PhotonGrid caustics_;
+  float first_radius_ = 0.0F;
+  double radius_squared_ = 0.0;
   std::vector<std::uint32_t> batch_shares_;
   std::uint32_t batch_photons_ = kBatchPhotons;
   std::uint64_t samples_budget_ = 0, photons_budget_ = 0, samples_done_ = 0, photons_done_ = 0, batches_done_ = 0;
@@ -365,6 +406,9 @@ Technique makeReferenceTechnique() {
       {"caustic-estimator", std::string("light"), 0, 0, "",
        "light: photons connected to the camera; path: paths from the eye alone, for checking (needs lights with a size)",
        {"light", "path"}},
+      {"specular-caustics", std::string("photons"), 0, 0, "",
+       "caustics in mirrors and through glass: photons (a kernel that shrinks) or path (unbiased; needs lights with a size)",
+       {"photons", "path"}},
       {"bands", 0, 0, 64, "", "wavelength bands of dispersive light; 0: continuous", {}},
   };
   technique.render = renderReference;

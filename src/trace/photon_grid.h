@@ -1,0 +1,71 @@
+// Photons where they ended, found again by place: a hash grid over one batch (Jensen 2001; cells as in Teschner 2003).
+//
+// Cells are as wide as the diameter of a search, so a search looks at eight. Built in the order of the photons, so that
+// sums over a search do not depend on threads.
+#pragma once
+
+#include <cmath>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "core/math.h"
+
+namespace nephroid {
+
+/// What a receiver needs of a photon that ended on it.
+struct GridPhoton {
+  vec3 position;  ///< world, m
+  vec3 dir;       ///< unit, along the travel of light
+  vec3 flux;      ///< W
+};
+
+class PhotonGrid {
+ public:
+  PhotonGrid() = default;
+  /// @param radius  of every search, m, > 0
+  PhotonGrid(std::span<const GridPhoton> photons, float radius);
+
+  bool empty() const { return photons_.empty(); }
+  float radius() const { return radius_; }
+
+  /// Calls `visit(photon)` for every photon within the radius of `position`.
+  template <class Visit>
+  void visitNear(vec3 position, Visit&& visit) const {
+    if (empty()) return;
+    const vec3 low = (position - radius_) * inverse_cell_;
+    const int x0 = cellOf(low.x), y0 = cellOf(low.y), z0 = cellOf(low.z);
+    std::uint32_t seen[8];
+    int count = 0;
+    for (int k = 0; k < 8; ++k) {
+      const std::uint32_t bucket = hashCell(x0 + (k & 1), y0 + ((k >> 1) & 1), z0 + (k >> 2));
+      // Two cells may share a bucket; its photons count once.
+      bool repeated = false;
+      for (int i = 0; i < count; ++i) repeated = repeated || seen[i] == bucket;
+      if (repeated) continue;
+      seen[count++] = bucket;
+      for (std::uint32_t i = begin_[bucket]; i < begin_[bucket + 1]; ++i) {
+        const vec3 offset = photons_[i].position - position;
+        if (dot(offset, offset) <= radius_ * radius_) visit(photons_[i]);
+      }
+    }
+  }
+
+ private:
+  static int cellOf(float x) { return static_cast<int>(std::floor(x)); }
+  std::uint32_t hashCell(int x, int y, int z) const {
+    const std::uint32_t h = static_cast<std::uint32_t>(x) * 73856093U ^ static_cast<std::uint32_t>(y) * 19349663U ^
+                            static_cast<std::uint32_t>(z) * 83492791U;
+    return h & mask_;
+  }
+
+  std::vector<GridPhoton> photons_;   ///< bucket by bucket
+  std::vector<std::uint32_t> begin_;  ///< bucket count + 1 offsets
+  float radius_ = 0.0F, inverse_cell_ = 0.0F;
+  std::uint32_t mask_ = 0;
+};
+
+/// A first radius that finds about `expected` photons where they are spread evenly over the largest side of their box.
+float chooseGatherRadius(std::span<const GridPhoton> photons, float expected);
+
+}  // namespace nephroid
