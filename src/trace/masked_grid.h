@@ -34,6 +34,7 @@ class MaskedGrid {
       row_runs_.push_back(static_cast<std::uint32_t>(runs_.size()));
       row_begin_.push_back(count);
     }
+    buildGuide();
   }
   std::size_t markedCount() const { return row_begin_.back(); }
   /// Marked share of the square: 1 / density of `sample`.
@@ -45,8 +46,11 @@ class MaskedGrid {
     // Doubles: a float has too few bits to tell places within one of a million cells.
     const double along = static_cast<double>(u.y) * row_begin_.back();
     const auto target = std::min(static_cast<std::uint32_t>(along), row_begin_.back() - 1);
-    const auto row = static_cast<std::uint32_t>(std::upper_bound(row_begin_.begin(), row_begin_.end(), target) -
-                                                row_begin_.begin() - 1);
+    std::uint32_t row =
+        guide_[std::min(static_cast<std::size_t>(u.y * static_cast<float>(guide_.size())), guide_.size() - 1)];
+    // The guide is near; rounding may have it off either way.
+    while (row_begin_[row] > target) --row;
+    while (row_begin_[row + 1] <= target) ++row;
     const std::uint32_t begin = row_begin_[row], count = row_begin_[row + 1] - begin;
     const double in_row = static_cast<double>(u.x) * count;
     const std::uint32_t cell = std::min(static_cast<std::uint32_t>(in_row), count - 1);
@@ -55,6 +59,10 @@ class MaskedGrid {
   }
 
  private:
+  /// Entries of the guide: so many that the row is mostly the guessed one or the next.
+  static constexpr int kGuidesPerRow = 2;
+  /// Up to so many runs are looked through one by one.
+  static constexpr std::uint32_t kFewRuns = 8;
   /// Marked neighbours in a row. Few numbers, unlike a list of the cells: they stay in the cache while photons are
   /// emitted all over.
   struct Run {
@@ -62,17 +70,32 @@ class MaskedGrid {
     std::uint32_t column;  ///< of its first cell
   };
   std::uint32_t columnOf(std::uint32_t row, std::uint32_t cell) const {
-    const auto begin = runs_.begin() + row_runs_[row], end = runs_.begin() + row_runs_[row + 1];
-    const auto after =
-        std::upper_bound(begin, end, cell, [](std::uint32_t c, const Run& run) { return c < run.first; });
-    const Run& run = *(after - 1);
-    return run.column + (cell - run.first);
+    // The last run that begins at or before the cell; most rows have one or two.
+    std::uint32_t run = row_runs_[row + 1] - 1;
+    if (run - row_runs_[row] < kFewRuns) {
+      while (runs_[run].first > cell) --run;
+    } else {
+      const auto begin = runs_.begin() + row_runs_[row], end = runs_.begin() + row_runs_[row + 1];
+      const auto isBefore = [](std::uint32_t c, const Run& r) { return c < r.first; };
+      run = static_cast<std::uint32_t>(std::upper_bound(begin, end, cell, isBefore) - runs_.begin()) - 1;
+    }
+    return runs_[run].column + (cell - runs_[run].first);
+  }
+  void buildGuide() {
+    const auto steps = static_cast<std::uint64_t>(kGuidesPerRow) * static_cast<std::uint64_t>(height_);
+    guide_.clear();
+    std::uint32_t row = 0;
+    for (std::uint64_t k = 0; k < steps && markedCount() > 0; ++k) {
+      while (row_begin_[row + 1] <= markedCount() * k / steps) ++row;
+      guide_.push_back(row);
+    }
   }
 
   int width_, height_;
   std::vector<std::uint8_t> marked_;
   std::vector<Run> runs_;                    ///< row by row
   std::vector<std::uint32_t> row_runs_;      ///< height + 1 offsets into runs_
+  std::vector<std::uint32_t> guide_;         ///< row of every step of u.y
   std::vector<std::uint32_t> row_begin_{0};  ///< height + 1 counts of the marked cells before each row
 };
 

@@ -33,6 +33,8 @@ class PhotonRun {
       for (std::size_t i = first; i < std::min(first + kGroupPhotons, order.size()); ++i) {
         const auto& [photon, sampler] = photons_[order[i]];
         group_.emplace_back(context_, emitter_, photon, sampler);
+        // Tracing a group drives all else out of the cache: the photons of the next are fetched meanwhile.
+        if (i + kGroupPhotons < order.size()) __builtin_prefetch(&photons_[order[i + kGroupPhotons]]);
       }
       traceGroup();
     }

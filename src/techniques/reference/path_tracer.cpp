@@ -172,7 +172,9 @@ class EyePath {
 
   bool survives() {
     if (class_.count() < kRouletteStart) return true;
-    const float q = std::min(0.95F, std::max(maxComponent(glm::abs(throughput_)), maxComponent(glm::abs(irradiance_throughput_))));
+    // A path that has lost nothing is not ended: glass that keeps all its light stays free of this noise.
+    const float q = std::max(maxComponent(glm::abs(throughput_)), maxComponent(glm::abs(irradiance_throughput_)));
+    if (q >= 1.0F) return true;
     if (q <= 0.0F || sampler_.next1D() >= q) return false;
     throughput_ /= q;
     irradiance_throughput_ /= q;
