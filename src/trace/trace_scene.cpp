@@ -21,7 +21,7 @@ constexpr float kPositionErrorScale = 0x1p-19F;
 constexpr float kRayStart = 1e-30F;
 
 /// Fewer rays than this are traced one by one: a packet costs about as much as so many.
-constexpr std::size_t kSmallestPacket = 9;
+constexpr std::size_t kSmallestPacket = 3;
 
 void setLane(RTCRay8& rays, std::size_t lane, const Ray& ray) {
   rays.org_x[lane] = ray.origin.x, rays.org_y[lane] = ray.origin.y, rays.org_z[lane] = ray.origin.z;

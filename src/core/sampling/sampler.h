@@ -7,7 +7,7 @@
 // Within a group the dimensions are those of a digital sequence over the field of four elements 0, 1, ω, ω + 1
 // [niederreiter-1987]: generator matrices of binomials times powers of the element, written in bits. The four together
 // are a (0, 4)-sequence in base 4, and, after a shear of every second one, dimensions (0, 1) and (2, 3) are
-// (0, 2)-sequences in base 2 (the idea is that of [ahmed-2024]). Dimensions 0 and 1 are the first two of Sobol'.
+// (0, 2)-sequences in base 2. Dimensions 0 and 1 are the first two of Sobol'.
 // Sobol's own third and fourth leave holes in their pair, which would show in every 2D sample taken from them. In four
 // dimensions the errors of both were measured as about equal: ours are smaller with 4^m points, Sobol's with 2·4^m; so
 // the best sample counts are powers of four.
