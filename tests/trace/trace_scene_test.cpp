@@ -72,6 +72,42 @@ TEST_P(Placement, NormalsPointOutOfTheSolid) {
   }
 }
 
+TEST_P(Placement, PacketsOfAnySizeMeetWhatSingleRaysMeet) {
+  const auto [instanced, mirrored] = GetParam();
+  SceneData data;
+  addObject(data, makeSphere("ball", dvec3(0), 1.0, 64), makeGlass(1.5F),
+            glm::scale(mat4(1.0F), vec3(mirrored ? -1.0F : 1.0F, 2.0F, 0.5F)));
+  if (instanced) {
+    Instance other = data.instances[0];
+    other.world_from_object = glm::translate(mat4(1.0F), vec3(-20, 0, 0));
+    data.instances.push_back(other);
+  }
+  const TraceScene scene(data);
+  std::mt19937 random(5);
+  std::uniform_real_distribution<float> uniform(-1.5F, 1.5F);
+  for (std::size_t count = 1; count <= TraceScene::kPacketSize; ++count) {
+    std::vector<Ray> rays;
+    std::vector<const Ray*> pointers;
+    for (std::size_t i = 0; i < count; ++i)
+      rays.push_back({vec3(uniform(random), uniform(random), 4.0F), vec3(0, 0, -1)});
+    for (const Ray& ray : rays) pointers.push_back(&ray);
+    RayHit hits[TraceScene::kPacketSize];
+    scene.intersectPacket(pointers, hits);
+    const std::uint32_t occluded = scene.occludedPacket(rays);
+    for (std::size_t i = 0; i < count; ++i) {
+      RayHit single;
+      const bool met = scene.intersect(rays[i], single);
+      EXPECT_EQ(hits[i].instance, met ? single.instance : kNone);
+      EXPECT_EQ((occluded >> i) & 1U, met ? 1U : 0U);
+      if (!met) continue;
+      EXPECT_EQ(hits[i].triangle, single.triangle);
+      EXPECT_NEAR(hits[i].t, single.t, 1e-5F);
+      EXPECT_NEAR(hits[i].u, single.u, 1e-3F);
+    }
+    EXPECT_EQ(occluded >> count, 0U);
+  }
+}
+
 INSTANTIATE_TEST_SUITE_P(All, Placement, testing::Combine(testing::Bool(), testing::Bool()));
 
 TEST(TraceScene, NewRaysDoNotMeetTheirOwnSurfaceAtAnyScale) {

@@ -12,7 +12,7 @@ namespace {
 /// Photons that are put in order together: many, so that neighbours are near.
 constexpr std::uint32_t kWavePhotons = 4096;
 /// Photons that are on their way together: several packets, few enough to stay in the cache.
-constexpr std::size_t kGroupPhotons = 64;
+constexpr std::size_t kGroupPhotons = 32;
 
 /// The photons of one run, in waves that are emitted, put in order and traced in groups.
 /// Sums are in an order that depends on the photons alone, never on threads.
