@@ -24,7 +24,8 @@ struct Triangle {
 
 vec3 centroid(const Triangle& t) { return (t.p[0] + t.p[1] + t.p[2]) * (1.0F / 3.0F); }
 
-/// Splits `triangle` in four until each part is below `limit` as seen from `eye` (or eight levels deep).
+/// Halves `triangle` across its longest edge until each part is below `limit` as seen from `eye`, `depth` times at most.
+/// Long thin triangles thus make as many parts as they are long, not as their length squared.
 template <class Visit>
 void visitParts(const Triangle& triangle, vec3 eye, float limit, int depth, Visit&& visit) {
   const vec3 c = centroid(triangle);
@@ -35,9 +36,16 @@ void visitParts(const Triangle& triangle, vec3 eye, float limit, int depth, Visi
     visit(c, radius, distance);
     return;
   }
-  const vec3 *p = triangle.p, ab = 0.5F * (p[0] + p[1]), bc = 0.5F * (p[1] + p[2]), ca = 0.5F * (p[2] + p[0]);
-  for (const Triangle& part : {Triangle{{p[0], ab, ca}}, Triangle{{p[1], bc, ab}}, Triangle{{p[2], ca, bc}}, Triangle{{ab, bc, ca}}})
-    visitParts(part, eye, limit, depth - 1, visit);
+  int longest = 0;
+  for (int k = 1; k < 3; ++k) {
+    const vec3 edge = triangle.p[(k + 1) % 3] - triangle.p[k];
+    const vec3 best = triangle.p[(longest + 1) % 3] - triangle.p[longest];
+    if (dot(edge, edge) > dot(best, best)) longest = k;
+  }
+  const vec3 from = triangle.p[longest], to = triangle.p[(longest + 1) % 3], tip = triangle.p[(longest + 2) % 3];
+  const vec3 middle = 0.5F * (from + to);
+  visitParts(Triangle{{from, middle, tip}}, eye, limit, depth - 1, visit);
+  visitParts(Triangle{{middle, to, tip}}, eye, limit, depth - 1, visit);
 }
 
 // ---------------------------------------------------------------------------------------------------- sun
@@ -198,7 +206,7 @@ class PointEmitter final : public Emitter {
     const float cell_angle = std::sqrt(2.0F * kPi * one_minus_cos_) / static_cast<float>(kMaskSize);
     bool everything = false;
     targets.visitTriangles([&](const vec3* p) {
-      visitParts(Triangle{{p[0], p[1], p[2]}}, light_.position, 4.0F * cell_angle, 8, [&](vec3 c, float radius, float distance) {
+      visitParts(Triangle{{p[0], p[1], p[2]}}, light_.position, 4.0F * cell_angle, 14, [&](vec3 c, float radius, float distance) {
         const float sine = (radius * 1.001F + light_.radius) / std::max(distance, 1e-30F);
         if (sine >= 1.0F) {
           everything = true;
