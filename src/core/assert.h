@@ -21,11 +21,11 @@ template <class A, class B>
 }  // namespace nephroid::detail
 
 #ifdef NEPHROID_ASSERTIONS
-#define NEPHROID_ASSERT_COMPARE_(a, op, b)                                                            \
-  do {                                                                                                \
-    const auto& nephroid_a_ = (a);                                                                    \
-    const auto& nephroid_b_ = (b);                                                                    \
-    if (!(nephroid_a_ op nephroid_b_))                                                                \
+#define NEPHROID_ASSERT_COMPARE_(a, op, b)                                                                 \
+  do {                                                                                                     \
+    const auto& nephroid_a_ = (a);                                                                         \
+    const auto& nephroid_b_ = (b);                                                                         \
+    if (!(nephroid_a_ op nephroid_b_))                                                                     \
       ::nephroid::detail::failComparison(__FILE__, __LINE__, #a " " #op " " #b, nephroid_a_, nephroid_b_); \
   } while (false)
 #else

@@ -11,12 +11,12 @@
 
 namespace nephroid {
 
-using glm::dot;
 using glm::cross;
+using glm::dot;
 using glm::length;
-using glm::normalize;
 using glm::mat3;
 using glm::mat4;
+using glm::normalize;
 using glm::quat;
 using glm::uvec3;
 using glm::vec2;

@@ -13,7 +13,8 @@ namespace nephroid {
 /// @throws UsageError, also when nothing matches (the message lists the names)
 void applyMaterialEdit(SceneData& scene, std::string_view edit);
 
-/// 'NAME:translate=x,y,z,rotate=x,y,z,scale=s,cast=true|false': degrees about X, then Y, then Z; about the object's own origin. NAME may be a GLOB.
+/// 'NAME:translate=x,y,z,rotate=x,y,z,scale=s,cast=true|false': degrees about X, then Y, then Z; about the object's own
+/// origin. NAME may be a GLOB.
 /// @throws UsageError
 void applyObjectEdit(SceneData& scene, std::string_view edit);
 

@@ -14,13 +14,13 @@ namespace nephroid {
 struct InstanceReport {
   std::string name, material;
   std::size_t triangle_count = 0;
-  std::size_t open_edge_count = 0;       ///< edges with one triangle, after welding equal positions
-  std::size_t nonmanifold_edge_count = 0;///< edges with more than two
-  std::size_t inconsistent_edge_count = 0;///< neighbours that wind in opposite senses
-  std::size_t degenerate_count = 0;      ///< triangles without area
-  std::size_t flipped_normal_count = 0;  ///< triangles whose vertex normals point against their winding
-  bool inward = false;                   ///< closed, and its signed volume is negative: normals point inward
-  double signed_volume = 0;              ///< m³, world
+  std::size_t open_edge_count = 0;          ///< edges with one triangle, after welding equal positions
+  std::size_t nonmanifold_edge_count = 0;   ///< edges with more than two
+  std::size_t inconsistent_edge_count = 0;  ///< neighbours that wind in opposite senses
+  std::size_t degenerate_count = 0;         ///< triangles without area
+  std::size_t flipped_normal_count = 0;     ///< triangles whose vertex normals point against their winding
+  bool inward = false;                      ///< closed, and its signed volume is negative: normals point inward
+  double signed_volume = 0;                 ///< m³, world
   Bounds bounds;
   Classification classification;
 };

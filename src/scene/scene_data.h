@@ -49,9 +49,10 @@ struct Material {
   float thickness = 0.0F;     ///< 0: thin-walled; anything else: solid (path lengths are real, the value is unused)
   vec3 attenuation_color{1.0F};
   float attenuation_distance = std::numeric_limits<float>::infinity();  ///< m, at which white becomes the colour
-  float specular_factor = 1.0F;   ///< KHR_materials_specular: scales the dielectric Fresnel reflection
-  vec3 specular_color{1.0F};      ///< ditto, per channel
-  std::optional<vec3> conductor_ior;  ///< complex index n + i k of a metal per channel; replaces Schlick's F0 = base_color
+  float specular_factor = 1.0F;  ///< KHR_materials_specular: scales the dielectric Fresnel reflection
+  vec3 specular_color{1.0F};     ///< ditto, per channel
+  std::optional<vec3>
+      conductor_ior;  ///< complex index n + i k of a metal per channel; replaces Schlick's F0 = base_color
   vec3 conductor_k{0.0F};
   float normal_scale = 1.0F;
   bool double_sided = false;  ///< bears on emission only: light and photons meet both sides of everything
@@ -83,11 +84,11 @@ struct Material {
 struct Mesh {
   std::string name;
   std::vector<vec3> positions;
-  std::vector<vec3> normals;    ///< unit; empty: flat shading
-  std::vector<vec4> tangents;   ///< xyz unit, w = ±1 handedness; empty: derived from texcoord0 where needed
+  std::vector<vec3> normals;   ///< unit; empty: flat shading
+  std::vector<vec4> tangents;  ///< xyz unit, w = ±1 handedness; empty: derived from texcoord0 where needed
   std::vector<vec2> texcoords[2];
-  std::vector<vec4> colors;     ///< linear, multiplies base_color
-  std::vector<uvec3> triangles; ///< indices into positions, all in range
+  std::vector<vec4> colors;      ///< linear, multiplies base_color
+  std::vector<uvec3> triangles;  ///< indices into positions, all in range
   std::uint32_t material = 0;
 
   Bounds bounds() const;
@@ -96,7 +97,7 @@ struct Mesh {
 /// A mesh placed in the world. Where the determinant of `world_from_object` is negative the placement is mirrored:
 /// whoever transforms the triangles must then exchange two corners of each to keep normals pointing out of the solid.
 struct Instance {
-  std::string name;       ///< the node's name
+  std::string name;  ///< the node's name
   std::uint32_t mesh = 0;
   mat4 world_from_object{1.0F};
   std::uint32_t object = 0;  ///< instances of one node share it: the parts of one thing
@@ -109,13 +110,13 @@ enum class LightKind : std::uint8_t { kPoint, kSpot, kSun };
 struct Light {
   std::string name;
   LightKind kind = LightKind::kPoint;
-  vec3 position{0.0F};          ///< point, spot; world
-  vec3 direction{0, -1, 0};     ///< spot, sun: along the travel of light; world, unit
-  vec3 intensity{1.0F};         ///< point, spot: W/sr; sun: irradiance perpendicular to it, W/m²
-  float radius = 0.0F;          ///< point, spot: sphere of radiance intensity / (π radius²), m
-  float angle_deg = 0.0F;       ///< sun: angular diameter, degrees
-  float inner_cone = 0.0F;      ///< spot: half-angles, radians; full intensity inside `inner_cone`,
-  float outer_cone = kPi / 4;   ///<       zero outside `outer_cone`, glTF's smooth fall-off between
+  vec3 position{0.0F};         ///< point, spot; world
+  vec3 direction{0, -1, 0};    ///< spot, sun: along the travel of light; world, unit
+  vec3 intensity{1.0F};        ///< point, spot: W/sr; sun: irradiance perpendicular to it, W/m²
+  float radius = 0.0F;         ///< point, spot: sphere of radiance intensity / (π radius²), m
+  float angle_deg = 0.0F;      ///< sun: angular diameter, degrees
+  float inner_cone = 0.0F;     ///< spot: half-angles, radians; full intensity inside `inner_cone`,
+  float outer_cone = kPi / 4;  ///<       zero outside `outer_cone`, glTF's smooth fall-off between
 };
 
 /// Radiance from infinitely far away, lat-long: row 0 is +Y; u = 0.5 is −Z, u grows towards +X (u = 0.75).
@@ -123,16 +124,16 @@ struct Environment {
   std::shared_ptr<const Image> radiance;  ///< 3 channels, W/m²/sr before `scale`
   float rotation_deg = 0.0F;              ///< turns the environment about +Y, counter-clockwise seen from above
   float scale = 1.0F;
-  std::string source;                     ///< file name or "sky:…" for messages and metadata
+  std::string source;  ///< file name or "sky:…" for messages and metadata
 };
 
 struct Camera {
   std::string name;
   vec3 eye{0, 0, 5};
-  vec3 forward{0, 0, -1};   ///< unit
-  vec3 up{0, 1, 0};         ///< unit, perpendicular to forward
-  float fov_y = kPi / 4;    ///< vertical angle of view, radians; perspective only
-  float ortho_height = 0;   ///< height of the view in metres; 0: perspective
+  vec3 forward{0, 0, -1};  ///< unit
+  vec3 up{0, 1, 0};        ///< unit, perpendicular to forward
+  float fov_y = kPi / 4;   ///< vertical angle of view, radians; perspective only
+  float ortho_height = 0;  ///< height of the view in metres; 0: perspective
 };
 
 /// What there is to render, and what was said while loading it.

@@ -50,7 +50,8 @@ template <class Pixels>
 vec4 sample(const Pixels& image, const TextureRef& reference, vec2 uv, bool srgb) {
   const float x = uv.x * static_cast<float>(image.width), y = uv.y * static_cast<float>(image.height);
   const auto texel = [&](int i, int j) {
-    return fetch(image, wrapTexel(i, image.width, reference.wrap_u), wrapTexel(j, image.height, reference.wrap_v), srgb);
+    return fetch(image, wrapTexel(i, image.width, reference.wrap_u), wrapTexel(j, image.height, reference.wrap_v),
+                 srgb);
   };
   if (reference.nearest) return texel(static_cast<int>(std::floor(x)), static_cast<int>(std::floor(y)));
   const float left = std::floor(x - 0.5F), top = std::floor(y - 0.5F);

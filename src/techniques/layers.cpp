@@ -17,7 +17,8 @@ constexpr LayerInfo kLayers[] = {
     {"direct", 3, true, kRadianceUnit, "light straight from a light onto what the eye sees (L D E)"},
     {"caustic", 3, true, kRadianceUnit, "light bent or mirrored onto what the eye sees (L S+ D E)"},
     {"specular", 3, true, kRadianceUnit, "everything seen in mirrors, through glass and in gloss (... S+ E)"},
-    {"indirect", 3, true, kRadianceUnit, "light scattered diffusely at least once before what the eye sees (... D ... D E)"},
+    {"indirect", 3, true, kRadianceUnit,
+     "light scattered diffusely at least once before what the eye sees (... D ... D E)"},
     {"emission", 3, true, kRadianceUnit, "lights and background as the eye sees them directly (L E)"},
     {"specular_caustic", 3, false, kRadianceUnit, "the part of specular that shows caustics (L S+ D S+ E)"},
     {"irradiance", 3, false, kIrradianceUnit, "light arriving at the first diffuse surface"},
@@ -40,8 +41,8 @@ const LayerInfo& findLayerInfo(std::string_view name) {
     names.emplace_back(info.name);
   }
   const std::string near = suggestName(name, names);
-  throw UsageError(fmt::format("no layer '{}'{}; there are: {}", name, near.empty() ? "" : fmt::format(" (did you mean '{}'?)", near),
-                               fmt::join(names, ", ")));
+  throw UsageError(fmt::format("no layer '{}'{}; there are: {}", name,
+                               near.empty() ? "" : fmt::format(" (did you mean '{}'?)", near), fmt::join(names, ", ")));
 }
 
 std::vector<std::string> parseLayerList(std::string_view comma_separated) {

@@ -132,10 +132,12 @@ std::vector<std::string> diagnoseLedgers(const std::vector<Ledger>& ledgers) {
     };
     if (share(ledger.deposited) > 0.05) continue;
     say("of what it sends to the generators ends on a receiver", share(ledger.deposited));
-    if (share(ledger.blocked) > 0.3) say("is blocked by something opaque in front of the generators", share(ledger.blocked));
+    if (share(ledger.blocked) > 0.3)
+      say("is blocked by something opaque in front of the generators", share(ledger.blocked));
     if (share(ledger.missed) > 0.6) say("misses them: they are thin or small for their outline", share(ledger.missed));
     if (share(ledger.absorbed) > 0.3) say("is absorbed: check attenuation and metal colours", share(ledger.absorbed));
-    if (share(ledger.escaped) > 0.3) say("leaves the scene after them: no receiver lies that way (try --floor on)", share(ledger.escaped));
+    if (share(ledger.escaped) > 0.3)
+      say("leaves the scene after them: no receiver lies that way (try --floor on)", share(ledger.escaped));
     for (std::size_t i = 0; i < ledger.lost.size(); ++i)
       if (share(ledger.lost[i]) > 0.05)
         say(fmt::format("is lost: {}", lossReasonName(static_cast<LossReason>(i))), share(ledger.lost[i]));

@@ -13,11 +13,11 @@ namespace nephroid {
 
 /// Why a photon was lost: neither deposited nor absorbed nor gone.
 enum class LossReason : std::uint8_t {
-  kBounceLimit,      ///< more scattering events than `max-bounces`
-  kMicrofacet,       ///< left a rough lobe on the wrong side of the surface (single-scattering model)
-  kShadingNormal,    ///< the interpolated normal sends it through the true surface
-  kInteriorOverflow, ///< inside more nested solids than the interior list holds
-  kNumerical,        ///< not a number: counted, never dropped silently
+  kBounceLimit,       ///< more scattering events than `max-bounces`
+  kMicrofacet,        ///< left a rough lobe on the wrong side of the surface (single-scattering model)
+  kShadingNormal,     ///< the interpolated normal sends it through the true surface
+  kInteriorOverflow,  ///< inside more nested solids than the interior list holds
+  kNumerical,         ///< not a number: counted, never dropped silently
   kCount
 };
 std::string_view lossReasonName(LossReason reason);
@@ -33,8 +33,8 @@ struct Ledger {
   dvec3 escaped{0};    ///< left the scene after a generator
   dvec3 deposited{0};  ///< incident on D lobes of receivers at the first D event after at least one S event
   std::array<dvec3, static_cast<std::size_t>(LossReason::kCount)> lost{};
-  dvec3 roulette{0};         ///< killed minus boosted; its expectation is 0
-  dvec3 roulette_squared{0}; ///< sum of squares per photon, for its standard error
+  dvec3 roulette{0};          ///< killed minus boosted; its expectation is 0
+  dvec3 roulette_squared{0};  ///< sum of squares per photon, for its standard error
 
   void add(const Ledger& other);
   /// Multiplies every flux: from sums over photons to watts.

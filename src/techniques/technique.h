@@ -19,12 +19,12 @@ namespace nephroid {
 struct RenderSettings {
   int width = 1024, height = 768;
   std::vector<std::string> layers{"beauty"};  ///< names of layerInfos()
-  std::uint64_t photons = 0;  ///< emitted, all lights and bands
-  std::uint64_t samples = 0;  ///< per pixel
+  std::uint64_t photons = 0;                  ///< emitted, all lights and bands
+  std::uint64_t samples = 0;                  ///< per pixel
   double seconds = 0;
   std::uint64_t seed = 0;
-  int threads = 0;            ///< 0: all cores
-  ParamSet params;            ///< of the technique, from --set
+  int threads = 0;  ///< 0: all cores
+  ParamSet params;  ///< of the technique, from --set
 };
 
 struct StageTime {
@@ -35,9 +35,9 @@ struct StageTime {
 /// What was done; varies between equal runs, so it goes into files only with --stats.
 struct RenderStats {
   std::vector<StageTime> stages;
-  std::uint64_t rays = 0;     ///< traced, shadow rays included
-  std::uint64_t photons = 0;  ///< emitted
-  std::uint64_t samples = 0;  ///< per pixel
+  std::uint64_t rays = 0;        ///< traced, shadow rays included
+  std::uint64_t photons = 0;     ///< emitted
+  std::uint64_t samples = 0;     ///< per pixel
   std::uint64_t not_finite = 0;  ///< path contributions dropped because they were not finite
 };
 

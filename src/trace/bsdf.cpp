@@ -61,8 +61,9 @@ vec3 Bsdf::reflectanceAt(float cos_theta, float fresnel) const {
   vec3 reflectance(0.0F);
   if (m.metallic > 0.0F) {
     const Material& source = *m.source;
-    reflectance = m.metallic * (source.conductor_ior ? fresnelConductor(cos_theta, *source.conductor_ior, source.conductor_k)
-                                                     : fresnelSchlick(cos_theta, m.base));
+    reflectance =
+        m.metallic * (source.conductor_ior ? fresnelConductor(cos_theta, *source.conductor_ior, source.conductor_k)
+                                           : fresnelSchlick(cos_theta, m.base));
   }
   if (m.metallic < 1.0F && m.gloss > 0.0F) {
     const float r = m.is_pane ? fresnelThinPane(fresnel) : fresnel;
@@ -154,7 +155,8 @@ BsdfValue Bsdf::evaluateInterface(vec3 wi, bool reflected, Transport transport) 
 }
 
 std::optional<BsdfSample> Bsdf::sample(EventClass c, vec2 u, float u_lobe, Transport transport) const {
-  if (c == EventClass::kSpecular) return smooth_ ? sampleSmooth(u_lobe, transport) : sampleInterface(u, u_lobe, transport);
+  if (c == EventClass::kSpecular)
+    return smooth_ ? sampleSmooth(u_lobe, transport) : sampleInterface(u, u_lobe, transport);
   if (interface_is_specular_) return sampleBase(u);
   const bool pick_interface = u_lobe < interface_probability_;
   std::optional<BsdfSample> s;

@@ -23,8 +23,13 @@ struct CameraConnection {
 class CameraModel {
  public:
   CameraModel(const Camera& camera, int width, int height)
-      : eye_(camera.eye), forward_(camera.forward), up_(camera.up), right_(cross(camera.forward, camera.up)),
-        width_(width), height_(height), orthographic_(camera.ortho_height > 0.0F) {
+      : eye_(camera.eye),
+        forward_(camera.forward),
+        up_(camera.up),
+        right_(cross(camera.forward, camera.up)),
+        width_(width),
+        height_(height),
+        orthographic_(camera.ortho_height > 0.0F) {
     half_height_ = orthographic_ ? 0.5F * camera.ortho_height : std::tan(0.5F * camera.fov_y);
     half_width_ = half_height_ * static_cast<float>(width) / static_cast<float>(height);
     const float pixel = 2.0F * half_height_ / static_cast<float>(height);

@@ -24,8 +24,8 @@ struct Triangle {
 
 vec3 centroid(const Triangle& t) { return (t.p[0] + t.p[1] + t.p[2]) * (1.0F / 3.0F); }
 
-/// Halves `triangle` across its longest edge until each part is below `limit` as seen from `eye`, `depth` times at most.
-/// Long thin triangles thus make as many parts as they are long, not as their length squared.
+/// Halves `triangle` across its longest edge until each part is below `limit` as seen from `eye`, `depth` times at
+/// most. Long thin triangles thus make as many parts as they are long, not as their length squared.
 template <class Visit>
 void visitParts(const Triangle& triangle, vec3 eye, float limit, int depth, Visit&& visit) {
   const vec3 c = centroid(triangle);
@@ -129,8 +129,7 @@ class SunEmitter final : public Emitter {
 
   void markDisc(vec2 centre, float radius) {
     const float reach = radius + cellReach();
-    markBox(centre - reach, centre + reach,
-            [&](vec2 p) { return dot(p - centre, p - centre) <= reach * reach; });
+    markBox(centre - reach, centre + reach, [&](vec2 p) { return dot(p - centre, p - centre) <= reach * reach; });
   }
   void markTriangle(const vec2* corners, float margin) {
     const float reach = margin + cellReach();
@@ -206,14 +205,16 @@ class PointEmitter final : public Emitter {
     const float cell_angle = std::sqrt(2.0F * kPi * one_minus_cos_) / static_cast<float>(kMaskSize);
     bool everything = false;
     targets.visitTriangles([&](const vec3* p) {
-      visitParts(Triangle{{p[0], p[1], p[2]}}, light_.position, 4.0F * cell_angle, 14, [&](vec3 c, float radius, float distance) {
-        const float sine = (radius * 1.001F + light_.radius) / std::max(distance, 1e-30F);
-        if (sine >= 1.0F) {
-          everything = true;
-          return;
-        }
-        caps.push_back({frame_.toLocal((c - light_.position) / distance), std::sqrt(1.0F - sine * sine), sine});
-      });
+      visitParts(
+          Triangle{{p[0], p[1], p[2]}}, light_.position, 4.0F * cell_angle, 14,
+          [&](vec3 c, float radius, float distance) {
+            const float sine = (radius * 1.001F + light_.radius) / std::max(distance, 1e-30F);
+            if (sine >= 1.0F) {
+              everything = true;
+              return;
+            }
+            caps.push_back({frame_.toLocal((c - light_.position) / distance), std::sqrt(1.0F - sine * sine), sine});
+          });
     });
     if (everything) {
       one_minus_cos_ = 2.0F;
@@ -311,7 +312,8 @@ class MeshEmitter final : public Emitter {
     if (total <= 0.0F) return normal;
     float rest = u_choice * total;
     std::size_t chosen = 0;
-    for (; chosen + 1 < clusters.size() && rest >= cones[chosen].one_minus_cos; ++chosen) rest -= cones[chosen].one_minus_cos;
+    for (; chosen + 1 < clusters.size() && rest >= cones[chosen].one_minus_cos; ++chosen)
+      rest -= cones[chosen].one_minus_cos;
     const vec3 dir = Frame::fromZ(cones[chosen].axis).toWorld(sampleUniformCone(u, cones[chosen].one_minus_cos));
     int count = 0;
     for (std::size_t k = 0; k < clusters.size(); ++k) {
@@ -362,7 +364,8 @@ class EnvironmentEmitter final : public Emitter {
     const float back = dot(on_disc - centre, photon.dir) + bounds_.radius() * 1.001F;
     photon.origin = on_disc - photon.dir * std::max(back, 0.0F);
     if (pdf_dir > 0.0F)
-      photon.flux = map_.radiance(to) * static_cast<float>(kPi * choice_->total() / (static_cast<double>(count) * pdf_dir));
+      photon.flux =
+          map_.radiance(to) * static_cast<float>(kPi * choice_->total() / (static_cast<double>(count) * pdf_dir));
     return photon;
   }
 

@@ -26,8 +26,9 @@ namespace nephroid {
 /// A photon as it leaves its light.
 struct EmittedPhoton {
   vec3 origin;
-  vec3 dir;         ///< unit, along the travel of light
-  vec3 flux{0.0F};  ///< W, as if one photon were emitted: divide by the emitted count. 0: leaves outside the light's lobe
+  vec3 dir;  ///< unit, along the travel of light
+  vec3 flux{
+      0.0F};  ///< W, as if one photon were emitted: divide by the emitted count. 0: leaves outside the light's lobe
 };
 
 /// Boxes, spheres and triangles to aim at.

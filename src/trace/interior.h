@@ -18,7 +18,7 @@ class InteriorList {
   static constexpr int kCapacity = 8;
 
   struct Entry {
-    std::uint32_t solid;          ///< TraceScene::solidOf
+    std::uint32_t solid;  ///< TraceScene::solidOf
     const Material* material;
   };
 
@@ -70,7 +70,7 @@ struct Interface {
   const Material* from = nullptr;  ///< medium on the side that the path comes from; null: vacuum
   const Material* to = nullptr;    ///< medium behind; null: vacuum
   bool entering = false;
-  bool is_event = true;            ///< false: hidden inside a solid that rules; the path goes straight on
+  bool is_event = true;  ///< false: hidden inside a solid that rules; the path goes straight on
 };
 
 /// @param entering  the path meets the outer side of the solid's surface

@@ -87,8 +87,8 @@ vec3 EnvironmentMap::radiance(vec3 dir_to) const {
   const auto texel = [&](int dx, int dy) {
     return image.rgb((i + dx + image.width) % image.width, std::clamp(j + dy, 0, image.height - 1));
   };
-  return environment_.scale * ((1 - fy) * ((1 - fx) * texel(0, 0) + fx * texel(1, 0)) +
-                               fy * ((1 - fx) * texel(0, 1) + fx * texel(1, 1)));
+  return environment_.scale *
+         ((1 - fy) * ((1 - fx) * texel(0, 0) + fx * texel(1, 0)) + fy * ((1 - fx) * texel(0, 1) + fx * texel(1, 1)));
 }
 
 vec3 EnvironmentMap::sample(vec2 u, float& pdf_solid_angle) const {
@@ -145,7 +145,8 @@ LightSet::LightSet(const TraceScene& scene, const MaterialTable& materials) : sc
   for (const double w : weights_) total += w;
   std::vector<float> choice;
   for (const double w : weights_)
-    choice.push_back(static_cast<float>(total > 0.0 ? 0.5 * w / total + 0.5 / static_cast<double>(weights_.size()) : 1.0));
+    choice.push_back(
+        static_cast<float>(total > 0.0 ? 0.5 * w / total + 0.5 / static_cast<double>(weights_.size()) : 1.0));
   choice_.emplace(choice);
   mesh_probability_.assign(mesh_lights_.size(), 0.0F);
   for (std::size_t e = 0; e < entries_.size(); ++e) {
@@ -255,7 +256,8 @@ LightSet::Met LightSet::metSurface(vec3 vertex, const SurfacePoint& point, vec3 
   met.radiance = materials_.emission(point, cos_light > 0.0F);
   const vec3 to = point.position - vertex;
   if (cos_light != 0.0F)
-    met.pdf = static_cast<float>(dot(to, to) / (std::abs(cos_light) * mesh_lights_[index].area)) * mesh_probability_[index];
+    met.pdf =
+        static_cast<float>(dot(to, to) / (std::abs(cos_light) * mesh_lights_[index].area)) * mesh_probability_[index];
   return met;
 }
 

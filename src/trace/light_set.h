@@ -17,11 +17,11 @@ namespace nephroid {
 
 /// Light sampled towards a point.
 struct LightSample {
-  vec3 dir;                 ///< unit, from the point to the light
-  float distance = 0;       ///< m; infinite for sun and environment
-  vec3 radiance{0.0F};      ///< W/m²/sr; for delta lights the irradiance on a surface facing it, W/m²
-  float pdf = 0.0F;         ///< per solid angle, choice of light included; for delta lights the probability of the choice
-  bool delta = false;       ///< cannot be met by chance
+  vec3 dir;             ///< unit, from the point to the light
+  float distance = 0;   ///< m; infinite for sun and environment
+  vec3 radiance{0.0F};  ///< W/m²/sr; for delta lights the irradiance on a surface facing it, W/m²
+  float pdf = 0.0F;     ///< per solid angle, choice of light included; for delta lights the probability of the choice
+  bool delta = false;   ///< cannot be met by chance
 };
 
 /// Radiance of a punctual light, W/sr, along `dir` (travel): the spot's cone applied.

@@ -17,9 +17,10 @@ bool overlap(const DirectionCap& a, const DirectionCap& b) {
 /// points of its border, and a quarter more for the curvature between them.
 DirectionCap boundBlock(const MaskedGrid& grid, float one_minus_cos, int x, int y, int size) {
   const auto image = [&](float i, float j) {
-    return capFromSquare(vec2((static_cast<float>(x) + i * static_cast<float>(size)) / static_cast<float>(grid.width()),
-                              (static_cast<float>(y) + j * static_cast<float>(size)) / static_cast<float>(grid.height())),
-                         one_minus_cos);
+    return capFromSquare(
+        vec2((static_cast<float>(x) + i * static_cast<float>(size)) / static_cast<float>(grid.width()),
+             (static_cast<float>(y) + j * static_cast<float>(size)) / static_cast<float>(grid.height())),
+        one_minus_cos);
   };
   DirectionCap cap{image(0.5F, 0.5F), 1.0F, 0.0F};
   float chord = 0.0F;

@@ -52,7 +52,8 @@ std::vector<PackedTriangle> packTriangles(const Mesh& mesh, const mat4& placed) 
     for (int k = 0; k < 3; ++k) {
       const std::uint32_t vertex = mesh.triangles[t][k];
       packed[t].corners[k] = transformPoint(placed, mesh.positions[vertex]);
-      packed[t].normals[k] = mesh.normals.empty() ? 0 : PackedTriangle::packNormal(normalize(normal_from_object * mesh.normals[vertex]));
+      packed[t].normals[k] =
+          mesh.normals.empty() ? 0 : PackedTriangle::packNormal(normalize(normal_from_object * mesh.normals[vertex]));
     }
   }
   return packed;
@@ -95,8 +96,8 @@ void TraceScene::buildPlaced() {
     placed.normal_from_object = glm::transpose(glm::inverse(mat3(instance.world_from_object)));
     placed.mirrored = glm::determinant(mat3(instance.world_from_object)) < 0.0F;
     placed.baked = uses[instance.mesh] == 1;
-    placed.solid = solids.try_emplace({instance.object, mesh.material}, static_cast<std::uint32_t>(solids.size()))
-                       .first->second;
+    placed.solid =
+        solids.try_emplace({instance.object, mesh.material}, static_cast<std::uint32_t>(solids.size())).first->second;
     placed.smooth = !mesh.normals.empty();
     if (packed_[instance.mesh].empty())
       packed_[instance.mesh] = packTriangles(mesh, placed.baked ? instance.world_from_object : mat4(1.0F));
@@ -109,8 +110,9 @@ RTCGeometry TraceScene::makeTriangles(const Placed& placed) {
   const Mesh& mesh = *placed.mesh;
   RTCGeometry geometry = rtcNewGeometry(device_.get(), RTC_GEOMETRY_TYPE_TRIANGLE);
   // Embree reads 16 bytes at each vertex, so the last of a shared 12-byte array would be read past its end: copy.
-  auto* vertices = static_cast<vec3*>(rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3,
-                                                              sizeof(vec3), std::max<std::size_t>(mesh.positions.size(), 1)));
+  auto* vertices =
+      static_cast<vec3*>(rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3, sizeof(vec3),
+                                                 std::max<std::size_t>(mesh.positions.size(), 1)));
   auto* indices =
       static_cast<uvec3*>(rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3, sizeof(uvec3),
                                                   std::max<std::size_t>(placed.triangles.size(), 1)));
@@ -258,7 +260,8 @@ SurfacePoint TraceScene::surfaceAt(const Ray& ray, const RayHit& hit) const {
   const float normal_length = length(normal);
   // A triangle without area has no normal; any that faces the ray keeps the arithmetic finite.
   point.normal_geometric = normal_length > 0.0F ? normal / normal_length : -ray.dir;
-  // The inverse transpose of a mirrored transform already turns object normals outward; world-space winding is reversed.
+  // The inverse transpose of a mirrored transform already turns object normals outward; world-space winding is
+  // reversed.
   if (placed.mirrored && placed.baked) point.normal_geometric = -point.normal_geometric;
   // Only the error across the surface matters: along it, the point is still on the surface.
   point.position_error = kPositionErrorScale * dot(glm::abs(point.normal_geometric), magnitude);
@@ -272,7 +275,8 @@ SurfacePoint TraceScene::surfaceAt(const Ray& ray, const RayHit& hit) const {
     if (squared > 0.0F) interpolated *= 1.0F / std::sqrt(squared);
     if (dot(interpolated, point.normal_geometric) > 0.0F) point.normal_shading = interpolated;
   }
-  if (placed.material->normal_texture.valid()) point.normal_shading = perturbNormal(placed, point, point.normal_shading);
+  if (placed.material->normal_texture.valid())
+    point.normal_shading = perturbNormal(placed, point, point.normal_shading);
   return point;
 }
 

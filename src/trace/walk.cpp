@@ -47,8 +47,7 @@ bool Walker::arrive(PathState& state, Sampler& sampler, Encounter& e, const RayH
   e.transmittance *= transmittanceOf(medium, hit.t);
 
   bool straight = false;
-  if (e.material->coverage < 1.0F)
-    straight = e.material->coverage == 0.0F || sampler.next1D() >= e.material->coverage;
+  if (e.material->coverage < 1.0F) straight = e.material->coverage == 0.0F || sampler.next1D() >= e.material->coverage;
   if (!straight && e.material->is_solid && !e.boundary.is_event) {
     straight = true;
     e.overflow = !crossInterface(state.interior, solid, material, entering);

@@ -62,7 +62,8 @@ double depositedShare(const char* file, const std::vector<std::string>& edits) {
 }
 
 TEST(GltfAssets, GlassCastsItsCaustic) {
-  EXPECT_GT(depositedShare("WineGlass-kenney-draco.gltf", {"*:transmission=1,thickness=0.01,roughness=0,metallic=0"}), 0.3);
+  EXPECT_GT(depositedShare("WineGlass-kenney-draco.gltf", {"*:transmission=1,thickness=0.01,roughness=0,metallic=0"}),
+            0.3);
   EXPECT_GT(depositedShare("PokalGlasses-draco-webp.glb", {"glass_accurate:thickness=0.01"}), 0.05);
   EXPECT_GT(depositedShare("Diamond.glb", {"*:transmission=1,thickness=1,roughness=0,ior=2.42,baseColor=1,1,1"}), 0.3);
   // As they are: the candle holder's glass is dielectric and smooth only by its texture.

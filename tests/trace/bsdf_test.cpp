@@ -68,7 +68,8 @@ TEST(Bsdf, WhiteSurfacesNeitherGainNorLose) {
   varnish.roughness = 0.0F;
   for (const float angle : {0.0F, 40.0F, 70.0F, 85.0F}) {
     for (const Material& m : {varnish, makeGlass(1.5F), makeMetal(vec3(1.0F))})
-      EXPECT_NEAR(measureAlbedo(Surface(m), directionAt(angle), Transport::kFlux).x, 1.0, 2e-3) << m.name << ' ' << angle;
+      EXPECT_NEAR(measureAlbedo(Surface(m), directionAt(angle), Transport::kFlux).x, 1.0, 2e-3)
+          << m.name << ' ' << angle;
     for (const Material& m : {makeGlass(1.5F, 0.3F), makeMetal(vec3(1.0F), 0.3F), makeGlass(1.5F, 0.8F)}) {
       const double albedo = measureAlbedo(Surface(m), directionAt(angle), Transport::kFlux).x;
       EXPECT_LE(albedo, 1.0 + 2e-3) << m.name << ' ' << angle;
@@ -125,7 +126,8 @@ TEST(Bsdf, EvaluationMatchesSampling) {
         const BsdfValue value = bsdf.evaluate(c, wi, Transport::kFlux);
         uniform += 4.0 * kPi * value.f.x * std::abs(wi.y) / kCount;
         density += 4.0 * kPi * value.pdf / kCount;
-        if (const auto s = bsdf.sample(c, v, sampler.next1D(), Transport::kFlux)) sampled += static_cast<double>(s->weight.x) / kCount;
+        if (const auto s = bsdf.sample(c, v, sampler.next1D(), Transport::kFlux))
+          sampled += static_cast<double>(s->weight.x) / kCount;
       }
       EXPECT_NEAR(uniform, sampled, 0.02 * sampled) << m.name << ' ' << m.roughness;
       EXPECT_LE(density, 1.02) << m.name;
@@ -170,8 +172,10 @@ TEST(Bsdf, RefractionIsReciprocalUpToTheSquaredIndices) {
   // f(a→b)/n_b² = f(b→a)/n_a² for radiance (Veach 1997, §5.2).
   const Surface surface(makeGlass(1.5F, 0.4F));
   const vec3 outside = directionAt(20), inside = normalize(vec3(-0.3F, -0.9F, 0.1F));
-  const float in_to_out = surface.at(outside, 1.0F, 1.5F).evaluate(EventClass::kSpecular, inside, Transport::kRadiance).f.x;
-  const float out_to_in = surface.at(inside, 1.5F, 1.0F).evaluate(EventClass::kSpecular, outside, Transport::kRadiance).f.x;
+  const float in_to_out =
+      surface.at(outside, 1.0F, 1.5F).evaluate(EventClass::kSpecular, inside, Transport::kRadiance).f.x;
+  const float out_to_in =
+      surface.at(inside, 1.5F, 1.0F).evaluate(EventClass::kSpecular, outside, Transport::kRadiance).f.x;
   EXPECT_GT(in_to_out, 0.0F);
   EXPECT_NEAR(out_to_in / 2.25F, in_to_out, 1e-3F * in_to_out);
 }

@@ -14,8 +14,13 @@ using test::makeGlass;
 
 /// A light source and a ball to aim at, nothing else.
 struct Aim {
-  explicit Aim(SceneData d) : data(std::move(d)), scene(data), materials(scene), lights(scene, materials),
-                              targets(scene, targetFlags()), emitters(makeEmitters(scene, materials, lights, targets)) {}
+  explicit Aim(SceneData d)
+      : data(std::move(d)),
+        scene(data),
+        materials(scene),
+        lights(scene, materials),
+        targets(scene, targetFlags()),
+        emitters(makeEmitters(scene, materials, lights, targets)) {}
   std::vector<bool> targetFlags() const {
     std::vector<bool> flags;
     for (const Instance& instance : data.instances) flags.push_back(data.materialOf(instance).transmits());

@@ -88,13 +88,15 @@ TEST(LightSet, WhatIsMetHasTheDensityWithWhichItIsSampled) {
     if (!s || s->delta) continue;
     bool found = false;
     const auto compare = [&](const LightSet::Met& met) {
-      found = found || (std::abs(met.pdf / s->pdf - 1.0F) < 5e-3F && std::abs(met.radiance.x / s->radiance.x - 1.0F) < 1e-3F);
+      found = found ||
+              (std::abs(met.pdf / s->pdf - 1.0F) < 5e-3F && std::abs(met.radiance.x / s->radiance.x - 1.0F) < 1e-3F);
     };
     const Ray ray{vec3(0, 0.1F, 0), s->dir};
     lit.lights.visitInfinity(s->dir, compare);
     lit.lights.visitSpheres(ray.origin, ray, kInfinity, compare);
     RayHit hit;
-    if (lit.scene.intersect(ray, hit)) compare(lit.lights.metSurface(ray.origin, lit.scene.surfaceAt(ray, hit), ray.dir));
+    if (lit.scene.intersect(ray, hit))
+      compare(lit.lights.metSurface(ray.origin, lit.scene.surfaceAt(ray, hit), ray.dir));
     matched += found;
     EXPECT_TRUE(found || std::isfinite(s->distance)) << i;
   }

@@ -18,7 +18,8 @@ TEST(MaskedGrid, SamplesMarkedCellsOnlyAndEvenly) {
   int counts[3] = {};
   for (int j = 0; j < 60; ++j) {
     for (int i = 0; i < 60; ++i) {
-      const vec2 p = grid.sample(vec2((static_cast<float>(i) + 0.5F) / 60.0F, (static_cast<float>(j) + 0.5F) / 60.0F)) * 8.0F;
+      const vec2 p =
+          grid.sample(vec2((static_cast<float>(i) + 0.5F) / 60.0F, (static_cast<float>(j) + 0.5F) / 60.0F)) * 8.0F;
       const int x = static_cast<int>(p.x), y = static_cast<int>(p.y);
       ASSERT_TRUE(grid.isMarked(x, y)) << x << ' ' << y;
       ++counts[y == 7 ? 2 : x == 1 ? 0 : 1];
@@ -68,7 +69,8 @@ TEST(MarkCaps, CoversEveryDirectionOfTheCap) {
       // Every cell whose centre lies in the cap must be marked.
       for (int y = 0; y < 64; ++y)
         for (int x = 0; x < 64; ++x) {
-          const vec3 d = capFromSquare(vec2((static_cast<float>(x) + 0.5F) / 64, (static_cast<float>(y) + 0.5F) / 64), h);
+          const vec3 d =
+              capFromSquare(vec2((static_cast<float>(x) + 0.5F) / 64, (static_cast<float>(y) + 0.5F) / 64), h);
           if (dot(d, axis) > std::cos(angle)) {
             ASSERT_TRUE(grid.isMarked(x, y)) << x << ' ' << y;
           }

@@ -42,8 +42,8 @@ class Placement : public testing::TestWithParam<std::tuple<bool, bool>> {};
 TEST_P(Placement, NormalsPointOutOfTheSolid) {
   const auto [instanced, mirrored] = GetParam();
   SceneData data;
-  const mat4 placed = glm::translate(mat4(1.0F), vec3(2, 0, 0)) *
-                      glm::scale(mat4(1.0F), vec3(mirrored ? -1.0F : 1.0F, 2.0F, 0.5F));
+  const mat4 placed =
+      glm::translate(mat4(1.0F), vec3(2, 0, 0)) * glm::scale(mat4(1.0F), vec3(mirrored ? -1.0F : 1.0F, 2.0F, 0.5F));
   addObject(data, makeSphere("ball", dvec3(0), 1.0, 64), makeGlass(1.5F), placed);
   if (instanced) {
     Instance other = data.instances[0];
@@ -114,7 +114,8 @@ TEST(TraceScene, NewRaysDoNotMeetTheirOwnSurfaceAtAnyScale) {
   for (const float scale : {1e-3F, 1.0F, 1e3F}) {
     SceneData data;
     // Off the origin by three of its sizes: coordinates that do not fit floats exactly.
-    const mat4 placed = glm::translate(mat4(1.0F), scale * vec3(2.7F, 1.3F, -3.1F)) * glm::scale(mat4(1.0F), vec3(scale));
+    const mat4 placed =
+        glm::translate(mat4(1.0F), scale * vec3(2.7F, 1.3F, -3.1F)) * glm::scale(mat4(1.0F), vec3(scale));
     addObject(data, makeSphere("ball", dvec3(0), 1.0, 128), makeGlass(1.5F), placed);
     const TraceScene scene(data);
     std::mt19937 random(5);

@@ -41,6 +41,7 @@ void writeExr(const std::filesystem::path& path, const LayeredImage& image, bool
 
 /// 8-bit RGB PNG of display-referred values in [0, 1] that are already sRGB-coded. Metadata as tEXt chunks. Atomic.
 /// @throws ResourceError
-void writePng(const std::filesystem::path& path, const Image& display, const std::map<std::string, std::string>& metadata = {});
+void writePng(const std::filesystem::path& path, const Image& display,
+              const std::map<std::string, std::string>& metadata = {});
 
 }  // namespace nephroid

@@ -11,10 +11,10 @@ namespace nephroid {
 
 struct LightTracingMeasurement {
   std::size_t triangle_count = 0;
-  std::uint64_t photons = 0, rays = 0;       ///< of one repetition
-  std::vector<double> tracer_rays_per_s;     ///< one thread, everything that a photon needs, splats included
-  std::vector<double> plain_rays_per_s;      ///< one thread, rtcIntersect1 and nothing else
-  std::vector<double> ratio;                 ///< of the two, repetition by repetition
+  std::uint64_t photons = 0, rays = 0;    ///< of one repetition
+  std::vector<double> tracer_rays_per_s;  ///< one thread, everything that a photon needs, splats included
+  std::vector<double> plain_rays_per_s;   ///< one thread, rtcIntersect1 and nothing else
+  std::vector<double> ratio;              ///< of the two, repetition by repetition
 };
 
 /// @param photons      per repetition; their rays are held in memory, 28 bytes each

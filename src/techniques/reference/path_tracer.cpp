@@ -27,7 +27,13 @@ class EyePath {
  public:
   EyePath(const ReferenceWorld& world, const LayerNeeds& needs, const PhotonGrid* caustics, Film& film,
           PathCounters& counters, std::size_t pixel, Sampler sampler)
-      : world_(world), needs_(needs), caustics_(caustics), film_(film), counters_(counters), pixel_(pixel), sampler_(sampler) {}
+      : world_(world),
+        needs_(needs),
+        caustics_(caustics),
+        film_(film),
+        counters_(counters),
+        pixel_(pixel),
+        sampler_(sampler) {}
 
   void trace(vec2 film_position) {
     state_.ray = world_.camera_model.rayThrough(film_position);
@@ -86,7 +92,8 @@ class EyePath {
       const float off_plane = std::abs(dot(photon.position - point.position, point.normal_geometric));
       // A photon of another surface nearby would leak light around edges.
       if (off_plane > kKernelFlatness * radius) return;
-      radiance += photon.flux * bsdf.evaluate(EventClass::kDiffuse, wi, Transport::kRadiance).f * bsdf.shadingCosineRatio(wi);
+      radiance +=
+          photon.flux * bsdf.evaluate(EventClass::kDiffuse, wi, Transport::kRadiance).f * bsdf.shadingCosineRatio(wi);
     });
     add(class_.with(EventClass::kDiffuse).with(EventClass::kSpecular), throughput_ * radiance / (kPi * radius * radius),
         vec3(0.0F), true);
@@ -125,8 +132,8 @@ class EyePath {
 
   /// The medium on the side of the surface that `dir` leaves to.
   const Material* mediumTowards(vec3 dir) const {
-    const bool same_side =
-        (dot(dir, encounter_.point.normal_geometric) > 0.0F) == (dot(state_.ray.dir, encounter_.point.normal_geometric) < 0.0F);
+    const bool same_side = (dot(dir, encounter_.point.normal_geometric) > 0.0F) ==
+                           (dot(state_.ray.dir, encounter_.point.normal_geometric) < 0.0F);
     return same_side ? encounter_.boundary.from : encounter_.boundary.to;
   }
 
@@ -225,7 +232,7 @@ class EyePath {
   PathClass class_;
   vec3 throughput_{1.0F};
   vec3 irradiance_throughput_{0.0F};  ///< the same from the first diffuse event on, with cosine instead of BSDF there
-  vec3 vertex_{0.0F};  ///< of the last event, or the eye
+  vec3 vertex_{0.0F};                 ///< of the last event, or the eye
   bool previous_is_delta_ = true;
   float previous_pdf_ = 0.0F;
 };

@@ -42,9 +42,14 @@ class ReferenceRender {
  public:
   ReferenceRender(const SceneData& scene, const Camera& camera, const RenderSettings& settings, ProgressSink* progress,
                   const StopToken* stop)
-      : start_(Clock::now()), settings_(settings), progress_(progress), stop_(stop), needs_(settings.layers),
+      : start_(Clock::now()),
+        settings_(settings),
+        progress_(progress),
+        stop_(stop),
+        needs_(settings.layers),
         world_(scene, camera, settings.width, settings.height, makeOptions(settings)),
-        film_(settings.width, settings.height, needs_), path_tracer_(world_, needs_) {
+        film_(settings.width, settings.height, needs_),
+        path_tracer_(world_, needs_) {
     const bool gather = settings.params.getString("specular-caustics") == "photons" && needs_.throughSpecular();
     if ((world_.options.light_tracing && needs_.lightTraced()) || gather)
       light_tracer_ = std::make_unique<LightTracer>(
@@ -119,8 +124,9 @@ class ReferenceRender {
       if (samples_done_ == 0)
         photons = gather_ && photons_done_ == 0;
       else if (photons_done_ > 0)
-        photons = settings_.seconds > 0 ? light_seconds_ <= path_seconds_
-                                        : share(photons_done_, photons_budget_) <= share(samples_done_, samples_budget_);
+        photons = settings_.seconds > 0
+                      ? light_seconds_ <= path_seconds_
+                      : share(photons_done_, photons_budget_) <= share(samples_done_, samples_budget_);
     }
     const Clock::time_point begin = Clock::now();
     if (photons) {
@@ -147,7 +153,8 @@ class ReferenceRender {
       }
       for (int x = 0; x < settings_.width; ++x) path_tracer_.tracePath(x, y, sample, film_, rows[y]);
     });
-    // A pass that was cut short has some rows more than others: those rows know it by the pass count they are divided by.
+    // A pass that was cut short has some rows more than others: those rows know it by the pass count they are divided
+    // by.
     if (!complete) {
       partial_rows_.assign(static_cast<std::size_t>(settings_.height), false);
       for (int y = 0; y < settings_.height; ++y) partial_rows_[y] = rows[y].rays > 0;
@@ -271,7 +278,8 @@ class ReferenceRender {
   /// From sums to pictures.
   void develop(RenderResult& result) {
     for (const std::string& name : settings_.layers) {
-      const auto geometry = std::find_if(geometry_.begin(), geometry_.end(), [&](const Layer& l) { return l.name == name; });
+      const auto geometry =
+          std::find_if(geometry_.begin(), geometry_.end(), [&](const Layer& l) { return l.name == name; });
       if (geometry != geometry_.end())
         result.image.layers.push_back(std::move(*geometry));
       else
@@ -331,7 +339,8 @@ class ReferenceRender {
     metadata["seed"] = std::to_string(settings_.seed);
     metadata["samples"] = std::to_string(samples_done_);
     metadata["photons"] = std::to_string(photons_done_);
-    for (const ParamSpec& spec : settings_.params.specs()) metadata["set." + spec.name] = settings_.params.toText(spec.name);
+    for (const ParamSpec& spec : settings_.params.specs())
+      metadata["set." + spec.name] = settings_.params.toText(spec.name);
     addNotes(result);
   }
 
@@ -340,10 +349,11 @@ class ReferenceRender {
     for (const Light& light : world_.scene.scene().lights)
       any_delta = any_delta || (light.kind == LightKind::kSun ? light.angle_deg == 0.0F : light.radius == 0.0F);
     if (any_delta && (needs_.specular || needs_.specular_caustic))
-      result.notes.emplace_back(
-          gather_ || !light_tracer_
-              ? "light of sources without a size that returns through mirrors or glass after two or more diffuse bounces is missing"
-              : "caustics in mirrors and through glass are missing under lights without a size: give them extras.radius or extras.angle");
+      result.notes.emplace_back(gather_ || !light_tracer_
+                                    ? "light of sources without a size that returns through mirrors or glass after two "
+                                      "or more diffuse bounces is missing"
+                                    : "caustics in mirrors and through glass are missing under lights without a size: "
+                                      "give them extras.radius or extras.angle");
     if (any_delta && !world_.options.light_tracing && needs_.caustic)
       result.notes.emplace_back("caustic-estimator=path finds no caustic of lights without a size");
     if (not_finite_ > 0)
@@ -386,7 +396,8 @@ RenderResult renderReference(const SceneData& scene, const Camera& camera, const
                              ProgressSink* progress, const StopToken* stop) {
   if (settings.width < 1 || settings.height < 1) throw UsageError("a picture has at least 1 × 1 pixels");
   const int threads = settings.threads > 0 ? settings.threads : tbb::this_task_arena::max_concurrency();
-  const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, static_cast<std::size_t>(std::max(threads, 1)));
+  const tbb::global_control limit(tbb::global_control::max_allowed_parallelism,
+                                  static_cast<std::size_t>(std::max(threads, 1)));
   tbb::task_arena arena(threads);
   RenderResult result;
   arena.execute([&] { result = ReferenceRender(scene, camera, settings, progress, stop).run(); });
@@ -401,13 +412,29 @@ Technique makeReferenceTechnique() {
   technique.text = "path tracing and light tracing on the CPU, progressive and unbiased: the truth for all others";
   technique.source = "Kajiya 1986; Arvo 1986; Veach 1997";
   technique.params = {
-      {"specular-alpha", kDefaultSpecularAlpha, 0.0, 1.0, "", "microfacet width below which a lobe counts as specular (an S event)", {}},
+      {"specular-alpha",
+       kDefaultSpecularAlpha,
+       0.0,
+       1.0,
+       "",
+       "microfacet width below which a lobe counts as specular (an S event)",
+       {}},
       {"max-bounces", 64, 1, 1024, "", "scattering events on a path before it is given up", {}},
-      {"caustic-estimator", std::string("light"), 0, 0, "",
-       "light: photons connected to the camera; path: paths from the eye alone, for checking (needs lights with a size)",
+      {"caustic-estimator",
+       std::string("light"),
+       0,
+       0,
+       "",
+       "light: photons connected to the camera; path: paths from the eye alone, for checking (needs lights with a "
+       "size)",
        {"light", "path"}},
-      {"specular-caustics", std::string("photons"), 0, 0, "",
-       "caustics in mirrors and through glass: photons (a kernel that shrinks) or path (unbiased; needs lights with a size)",
+      {"specular-caustics",
+       std::string("photons"),
+       0,
+       0,
+       "",
+       "caustics in mirrors and through glass: photons (a kernel that shrinks) or path (unbiased; needs lights with a "
+       "size)",
        {"photons", "path"}},
       {"bands", 0, 0, 64, "", "wavelength bands of dispersive light; 0: continuous", {}},
   };

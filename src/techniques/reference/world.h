@@ -24,8 +24,13 @@ struct ReferenceOptions {
 /// Immutable while rendering.
 struct ReferenceWorld {
   ReferenceWorld(const SceneData& data, const Camera& camera, int width, int height, const ReferenceOptions& opts)
-      : scene(data), materials(scene), lights(scene, materials), walker(scene, materials),
-        camera_model(camera, width, height), camera_interior(findInterior(scene, camera.eye)), options(opts) {}
+      : scene(data),
+        materials(scene),
+        lights(scene, materials),
+        walker(scene, materials),
+        camera_model(camera, width, height),
+        camera_interior(findInterior(scene, camera.eye)),
+        options(opts) {}
   TraceScene scene;
   MaterialTable materials;
   LightSet lights;

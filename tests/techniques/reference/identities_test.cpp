@@ -16,7 +16,8 @@ using test::renderReference;
 
 /// Sees the floor from the side, the ball's caustic in the middle.
 Camera lookAtFloor(float scale = 1.0F, float mirror = 1.0F) {
-  return makeCamera("floor", scale * vec3(mirror * 3.5F, 3.0F, 2.5F), scale * vec3(mirror * 0.5F, 0, 0.3F), radians(50));
+  return makeCamera("floor", scale * vec3(mirror * 3.5F, 3.0F, 2.5F), scale * vec3(mirror * 0.5F, 0, 0.3F),
+                    radians(50));
 }
 
 SceneData makeSunlitBall(Material material) {
@@ -111,7 +112,8 @@ TEST(Identity, ScaleOfTheSceneChangesNothingUnderASun) {
     const RenderResult result = renderReference(scaled, lookAtFloor(scale), settings);
     // The same numbers draw the same paths, but for rounding: far below the noise.
     for (const char* layer : {"direct", "caustic", "irradiance"})
-      EXPECT_LT(relativeDifference(*result.image.find(layer), *reference.image.find(layer)), 0.02) << layer << ' ' << scale;
+      EXPECT_LT(relativeDifference(*result.image.find(layer), *reference.image.find(layer)), 0.02)
+          << layer << ' ' << scale;
   }
 }
 

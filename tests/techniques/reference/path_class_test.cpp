@@ -29,7 +29,8 @@ TEST(PathClass, PartitionsPathsAsTheLayersAreDefined) {
 TEST(PathClass, SpecularCausticIsLightSpecularReceiverSpecularEye) {
   EXPECT_TRUE(classOf("SDS").isSpecularCaustic());
   EXPECT_TRUE(classOf("SSDSS").isSpecularCaustic());
-  for (const char* other : {"S", "SD", "DS", "SDDS", "SDSD", "SS"}) EXPECT_FALSE(classOf(other).isSpecularCaustic()) << other;
+  for (const char* other : {"S", "SD", "DS", "SDDS", "SDSD", "SS"})
+    EXPECT_FALSE(classOf(other).isSpecularCaustic()) << other;
 }
 
 TEST(PathClass, LightTracingTakesWhatBeginsSpecularAndEndsDiffuse) {

@@ -39,10 +39,12 @@ SceneData makeLampScene(Material material) {
   const bool overhead = material.transmits();
   SceneData scene = test::makeBallScene(std::move(material), 128);
   if (!overhead) {
-    addObject(scene, makeRectangle("lamp", dvec3(4.5, 1.5, 1.0), dvec3(0, 0, 2.5), dvec3(0, 1.5, 0)), makeLamp(vec3(5.0F, 4.0F, 3.0F)));
+    addObject(scene, makeRectangle("lamp", dvec3(4.5, 1.5, 1.0), dvec3(0, 0, 2.5), dvec3(0, 1.5, 0)),
+              makeLamp(vec3(5.0F, 4.0F, 3.0F)));
     return scene;
   }
-  addObject(scene, makeRectangle("lamp", dvec3(0, 4, 0), dvec3(2.5, 0, 0), dvec3(0, 0, 2.5)), makeLamp(vec3(5.0F, 4.0F, 3.0F)));
+  addObject(scene, makeRectangle("lamp", dvec3(0, 4, 0), dvec3(2.5, 0, 0), dvec3(0, 0, 2.5)),
+            makeLamp(vec3(5.0F, 4.0F, 3.0F)));
   return scene;
 }
 
@@ -134,7 +136,8 @@ TEST_P(Estimators, LightTracingAndPathTracingAgree) {
   const bool weak = std::string(GetParam()) == "varnish";
   RenderSettings from_eye = makeSettings(16, weak ? 1024 : 256, 0, {"irradiance_caustic"});
   from_eye.params.set("caustic-estimator", "path");
-  expectAgreement(blockMeans(scene, from_lights, "irradiance_caustic"), blockMeans(scene, from_eye, "irradiance_caustic"));
+  expectAgreement(blockMeans(scene, from_lights, "irradiance_caustic"),
+                  blockMeans(scene, from_eye, "irradiance_caustic"));
 }
 
 INSTANTIATE_TEST_SUITE_P(Materials, Estimators,
@@ -174,7 +177,8 @@ TEST(Reference, SunWithASizeAgreesBetweenEstimators) {
   scene.lights.push_back(test::makeSun(vec3(-0.4F, -1, -0.2F), vec3(3.0F), 60.0F));
   RenderSettings from_eye = makeSettings(16, 256, 0, {"caustic"});
   from_eye.params.set("caustic-estimator", "path");
-  expectAgreement(blockMeans(scene, makeSettings(16, 1, 1 << 14, {"caustic"}), "caustic"), blockMeans(scene, from_eye, "caustic"));
+  expectAgreement(blockMeans(scene, makeSettings(16, 1, 1 << 14, {"caustic"}), "caustic"),
+                  blockMeans(scene, from_eye, "caustic"));
 }
 
 TEST(Reference, EnvironmentAgreesBetweenEstimators) {
@@ -184,16 +188,19 @@ TEST(Reference, EnvironmentAgreesBetweenEstimators) {
   scene.environment = Environment{image, 20.0F, 1.0F, "test"};
   RenderSettings from_eye = makeSettings(16, 256, 0, {"caustic"});
   from_eye.params.set("caustic-estimator", "path");
-  expectAgreement(blockMeans(scene, makeSettings(16, 1, 1 << 15, {"caustic"}), "caustic"), blockMeans(scene, from_eye, "caustic"));
+  expectAgreement(blockMeans(scene, makeSettings(16, 1, 1 << 15, {"caustic"}), "caustic"),
+                  blockMeans(scene, from_eye, "caustic"));
 }
 
 TEST(Reference, LayersSumToBeauty) {
   const SceneData scene = makeLampScene(makeGlass(1.5F));
   const RenderResult result =
-      renderReference(scene, lookFromAbove(), makeSettings(48, 16, 100000, parseLayerList("beauty,direct,caustic,specular,indirect,emission")));
+      renderReference(scene, lookFromAbove(),
+                      makeSettings(48, 16, 100000, parseLayerList("beauty,direct,caustic,specular,indirect,emission")));
   const Image& beauty = *result.image.find("beauty");
   ASSERT_GT(test::meanOf(beauty).x, 0.0);
-  for (const char* name : {"direct", "caustic", "specular", "indirect"}) EXPECT_GT(test::meanOf(*result.image.find(name)).x, 0.0) << name;
+  for (const char* name : {"direct", "caustic", "specular", "indirect"})
+    EXPECT_GT(test::meanOf(*result.image.find(name)).x, 0.0) << name;
   for (std::size_t i = 0; i < beauty.pixels.size(); ++i) {
     float sum = 0.0F;
     for (const LayerInfo& info : layerInfos())
@@ -213,12 +220,14 @@ TEST(Reference, LedgerClosesForEveryKindOfMaterialAndLight) {
     SceneData scene = makeLampScene(material);
     scene.lights.push_back(test::makeSun(vec3(-0.4F, -1, -0.2F), vec3(3.0F), 0.5F));
     scene.lights.push_back(test::makePoint(vec3(2, 4, 1), vec3(9.0F, 5.0F, 1.0F)));
-    const RenderResult result = renderReference(scene, lookFromAbove(), makeSettings(16, 1, 50000, {"caustic", "indirect"}));
+    const RenderResult result =
+        renderReference(scene, lookFromAbove(), makeSettings(16, 1, 50000, {"caustic", "indirect"}));
     ASSERT_EQ(result.ledgers.size(), 3U);
     for (const Ledger& ledger : result.ledgers) {
       EXPECT_LE(ledger.residual(), 1e-5) << material.name << ' ' << ledger.light;
       const dvec3 roulette = ledger.roulette, error = ledger.rouletteStandardError();
-      for (int c = 0; c < 3; ++c) EXPECT_LE(std::abs(roulette[c]), 4.5 * error[c] + 1e-6 * ledger.emitted[c]) << material.name;
+      for (int c = 0; c < 3; ++c)
+        EXPECT_LE(std::abs(roulette[c]), 4.5 * error[c] + 1e-6 * ledger.emitted[c]) << material.name;
     }
   }
 }
@@ -226,7 +235,8 @@ TEST(Reference, LedgerClosesForEveryKindOfMaterialAndLight) {
 TEST(Reference, GeometryLayersSayWhatIsSeen) {
   const SceneData scene = test::makeBallScene(makeGlass(1.5F));
   const Camera down = makeCamera("down", vec3(0, 5, 0), vec3(0, 0, 0), radians(60));
-  const RenderResult result = renderReference(scene, down, makeSettings(33, 1, 1, parseLayerList("albedo,normal,position,depth,id")));
+  const RenderResult result =
+      renderReference(scene, down, makeSettings(33, 1, 1, parseLayerList("albedo,normal,position,depth,id")));
   EXPECT_EQ(result.image.find("id")->at(16, 16)[0], 2.0F);
   EXPECT_EQ(result.image.find("id")->at(1, 1)[0], 1.0F);
   EXPECT_NEAR(result.image.find("depth")->at(16, 16)[0], 2.8F, 1e-3F);
@@ -240,8 +250,9 @@ TEST(Reference, StopBeforeAnythingIsDoneIsInterruptedError) {
   const SceneData scene = makeLampScene(makeGlass(1.5F));
   StopToken stop;
   stop.request();
-  EXPECT_THROW(findTechnique("reference").render(scene, lookFromAbove(), makeSettings(16, 4, 1000, {"beauty"}), nullptr, &stop),
-               InterruptedError);
+  EXPECT_THROW(
+      findTechnique("reference").render(scene, lookFromAbove(), makeSettings(16, 4, 1000, {"beauty"}), nullptr, &stop),
+      InterruptedError);
 }
 
 TEST(Reference, StopKeepsWhatWasReached) {
@@ -255,7 +266,8 @@ TEST(Reference, StopKeepsWhatWasReached) {
   } sink;
   const SceneData scene = makeLampScene(makeGlass(1.5F));
   const RenderResult result =
-      findTechnique("reference").render(scene, lookFromAbove(), makeSettings(16, 1000000, 1000, {"beauty"}), &sink, &sink.stop);
+      findTechnique("reference")
+          .render(scene, lookFromAbove(), makeSettings(16, 1000000, 1000, {"beauty"}), &sink, &sink.stop);
   EXPECT_TRUE(result.interrupted);
   EXPECT_EQ(result.stats.samples, 1U);
   EXPECT_GT(test::meanOf(result.image.layers[0].image).x, 0.0);
