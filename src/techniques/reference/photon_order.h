@@ -19,7 +19,7 @@ class PhotonOrder {
 
   /// Place of a ray on a Morton curve through the targets: of its point that is nearest to their centre.
   std::uint32_t keyOf(vec3 origin, vec3 dir) const;
-  /// Indices of `keys` by ascending key, equal ones in their order.
+  /// Indices of `keys`, as keyOf makes them, by ascending key, equal ones in their order.
   static std::vector<std::uint32_t> sort(std::span<const std::uint32_t> keys);
 
  private:
