@@ -409,8 +409,10 @@ RenderResult renderReference(const SceneData& scene, const Camera& camera, const
 Technique makeReferenceTechnique() {
   Technique technique;
   technique.name = "reference";
-  technique.text = "path tracing and light tracing on the CPU, progressive and unbiased: the truth for all others";
-  technique.source = "Kajiya 1986; Arvo 1986; Veach 1997";
+  technique.text =
+      "path tracing and light tracing on the CPU, progressive: unbiased but for caustics in mirrors and through glass, "
+      "whose kernels shrink; the truth for all others";
+  technique.source = "Kajiya 1986; Arvo 1986; Veach 1997; Knaus & Zwicker 2011";
   technique.params = {
       {"specular-alpha",
        kDefaultSpecularAlpha,
