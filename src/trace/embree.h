@@ -68,32 +68,33 @@ inline bool intersectAny(RTCScene scene, RTCRay& ray) {
 }
 
 /// Eight rays at once, those whose `valid` is −1; they run alike, or packets gain nothing.
-/// @param valid  [8], aligned to 32 bytes
-inline void intersectClosest8(const int* valid, RTCScene scene, RTCRayHit8& ray_hits) {
+/// @param valid     [8], aligned to 32 bytes
+/// @param coherent  they stay together nearly to the end: visits each node once for all of them
+inline void intersectClosest8(const int* valid, RTCScene scene, RTCRayHit8& ray_hits, bool coherent) {
 #if NEPHROID_EMBREE_MAJOR >= 4
   RTCIntersectArguments arguments;
   rtcInitIntersectArguments(&arguments);
-  arguments.flags = RTC_RAY_QUERY_FLAG_INCOHERENT;
+  arguments.flags = coherent ? RTC_RAY_QUERY_FLAG_COHERENT : RTC_RAY_QUERY_FLAG_INCOHERENT;
   rtcIntersect8(valid, scene, &ray_hits, &arguments);
 #else
   RTCIntersectContext context;
   rtcInitIntersectContext(&context);
-  context.flags = RTC_INTERSECT_CONTEXT_FLAG_INCOHERENT;
+  context.flags = coherent ? RTC_INTERSECT_CONTEXT_FLAG_COHERENT : RTC_INTERSECT_CONTEXT_FLAG_INCOHERENT;
   rtcIntersect8(valid, scene, &context, &ray_hits);
 #endif
 }
 
 /// The same for intersectAny: `rays.tfar` is −infinity where something lies on the ray.
-inline void intersectAny8(const int* valid, RTCScene scene, RTCRay8& rays) {
+inline void intersectAny8(const int* valid, RTCScene scene, RTCRay8& rays, bool coherent) {
 #if NEPHROID_EMBREE_MAJOR >= 4
   RTCOccludedArguments arguments;
   rtcInitOccludedArguments(&arguments);
-  arguments.flags = RTC_RAY_QUERY_FLAG_INCOHERENT;
+  arguments.flags = coherent ? RTC_RAY_QUERY_FLAG_COHERENT : RTC_RAY_QUERY_FLAG_INCOHERENT;
   rtcOccluded8(valid, scene, &rays, &arguments);
 #else
   RTCIntersectContext context;
   rtcInitIntersectContext(&context);
-  context.flags = RTC_INTERSECT_CONTEXT_FLAG_INCOHERENT;
+  context.flags = coherent ? RTC_INTERSECT_CONTEXT_FLAG_COHERENT : RTC_INTERSECT_CONTEXT_FLAG_INCOHERENT;
   rtcOccluded8(valid, scene, &context, &rays);
 #endif
 }

@@ -59,12 +59,17 @@ void LightPath::depart() {
 }
 
 void LightPath::lose(LossReason reason, vec3 flux) {
+  if (reason == LossReason::kNumerical) ++context_->tally.not_finite;
   if (accounted()) ledger_->lost[static_cast<std::size_t>(reason)] += dvec3(flux);
 }
 
 bool LightPath::endStep() {
   if (encounter_.transmittance != vec3(1.0F)) {
     const vec3 kept = flux_ * encounter_.transmittance;
+    if (!isFinite(kept)) {
+      lose(LossReason::kNumerical, flux_);
+      return false;
+    }
     if (accounted()) ledger_->absorbed += dvec3(flux_) - dvec3(kept);
     flux_ = kept;
   }
@@ -87,14 +92,20 @@ bool LightPath::scatter() {
   }
   const vec3 wo = -state_.ray.dir;
   const vec3 weight = drawWavelength(state_, encounter_.boundary, options.spectral, sampler_);
-  if (accounted()) roulette_ += dvec3(flux_) - dvec3(flux_ * weight);
-  flux_ *= weight;
+  const vec3 weighted = flux_ * weight;
   const float ior_from = iorOf(encounter_.boundary.from, state_.wavelength_nm);
   const float ior_to = iorOf(encounter_.boundary.to, state_.wavelength_nm);
   const Bsdf bsdf(*encounter_.material, encounter_.point, wo, ior_from, ior_to, options.specular_alpha);
   // The interface's share goes on as S; the rest is the base's (or, without a base, is absorbed).
   const vec3 specular_share = bsdf.hasSpecular() ? bsdf.interfaceAlbedo() : vec3(0.0F);
-  const vec3 rest = flux_ * (1.0F - specular_share);
+  const vec3 rest = weighted * (1.0F - specular_share);
+  // Not finite either if `weighted` is not: nothing of this event has been accounted for yet.
+  if (!isFinite(rest)) {
+    lose(LossReason::kNumerical, flux_);
+    return false;
+  }
+  if (accounted()) roulette_ += dvec3(flux_) - dvec3(weighted);
+  flux_ = weighted;
   if (!bsdf.hasDiffuse()) {
     if (accounted()) ledger_->absorbed += dvec3(rest);
   } else if (stage_ == Stage::kEmitted) {
@@ -123,6 +134,10 @@ bool LightPath::continueWith(const Bsdf& bsdf, vec3 specular_share, vec3 wo) {
     return scatterDiffuse(bsdf, p_class, wo);
   }
   const vec3 carried = specular_flux / p_class;
+  if (!isFinite(carried)) {
+    lose(LossReason::kNumerical, specular_flux);
+    return false;
+  }
   if (accounted()) roulette_ += dvec3(specular_flux) - dvec3(carried);
   return scatterSpecular(bsdf, carried, p_class);
 }
@@ -136,6 +151,10 @@ bool LightPath::scatterSpecular(const Bsdf& bsdf, vec3 carried, float p_class) {
     return false;
   }
   const vec3 out = flux_ * s->weight / p_class;
+  if (!isFinite(out)) {
+    lose(LossReason::kNumerical, carried);
+    return false;
+  }
   if (accounted()) {
     const dvec3 difference = dvec3(carried) - dvec3(out);
     if (smooth)
@@ -157,14 +176,14 @@ bool LightPath::scatterDiffuse(const Bsdf& bsdf, float p_class, vec3 wo) {
   const float leaving = bsdf.shadingCosineRatio(s->dir);
   if (leaving <= 0.0F) return false;
   flux_ *= s->weight * (bsdf.shadingCosineRatio(wo) / leaving / p_class);
+  if (!isFinite(flux_)) {
+    lose(LossReason::kNumerical, flux_);  // deposited long since: only counted
+    return false;
+  }
   return leave(*s);
 }
 
 bool LightPath::leave(const BsdfSample& s) {
-  if (!isFinite(flux_)) {
-    ++context_->tally.not_finite;
-    return false;
-  }
   if (encounter_.material->is_solid) {
     const std::uint32_t solid = context_->world.scene.solidOf(encounter_.point.instance);
     const Material& material = *encounter_.material->source;

@@ -4,80 +4,46 @@
 #include <cmath>
 
 #include "techniques/reference/light_path.h"
-#include "techniques/reference/photon_order.h"
 
 namespace nephroid {
 namespace {
 
-/// Photons that are put in order together: many, so that neighbours are near.
-constexpr std::uint32_t kWavePhotons = 4096;
 /// Photons that are on their way together: several packets, few enough to stay in the cache.
 constexpr std::size_t kGroupPhotons = 32;
 
-/// The photons of one run, in waves that are emitted, put in order and traced in groups.
-/// Sums are in an order that depends on the photons alone, never on threads.
-class PhotonRun {
+/// Traces photons in groups. Sums are in an order that depends on the photons alone, never on threads.
+class GroupTracer {
  public:
-  PhotonRun(const LightPathContext& context, const Emitter& emitter, const PhotonOrder& order)
-      : context_(context), emitter_(emitter), order_(order) {}
+  GroupTracer(const LightPathContext& context, const Emitter& emitter) : context_(context), emitter_(emitter) {}
 
-  /// @param sampler_of  the numbers of a photon by its index
-  template <class SamplerOf>
-  void traceWave(std::uint32_t begin, std::uint32_t end, SamplerOf&& sampler_of) {
-    photons_.clear();
-    keys_.clear();
-    for (std::uint32_t i = begin; i < end; ++i) emit(sampler_of(i));
-    const std::vector<std::uint32_t> order = PhotonOrder::sort(keys_);
-    for (std::size_t first = 0; first < order.size(); first += kGroupPhotons) {
-      group_.clear();
-      for (std::size_t i = first; i < std::min(first + kGroupPhotons, order.size()); ++i) {
-        const auto& [photon, sampler] = photons_[order[i]];
-        group_.emplace_back(context_, emitter_, photon, sampler);
-        // Tracing a group drives all else out of the cache: the photons of the next are fetched meanwhile.
-        if (i + kGroupPhotons < order.size()) __builtin_prefetch(&photons_[order[i + kGroupPhotons]]);
-      }
-      traceGroup();
+  /// Traces photons [begin, end) of a wave's order, at most kGroupPhotons.
+  void trace(const PhotonWave& wave, std::size_t begin, std::size_t end) {
+    group_.clear();
+    live_.clear();
+    for (std::size_t i = begin; i < end; ++i) {
+      group_.emplace_back(context_, emitter_, wave[i].emitted, wave[i].sampler);
+      // Tracing a group drives all else out of the cache: the photons of the next are fetched meanwhile.
+      wave.prefetch(i + kGroupPhotons);
     }
+    for (LightPath& path : group_)
+      if (path.alive()) live_.push_back(&path);
+    while (!live_.empty()) step();
   }
 
  private:
-  void emit(Sampler sampler) {
-    const EmittedPhoton photon = emitter_.emit(sampler);
-    if (!isFinite(photon.flux)) {
-      ++context_.tally.not_finite;
-      return;
-    }
-    context_.tally.ledger.emitted += dvec3(photon.flux);
-    if (photon.flux == vec3(0.0F)) return;
-    photons_.push_back({photon, sampler});
-    keys_.push_back(order_.keyOf(photon.origin, photon.dir));
-  }
-
-  void traceGroup() {
-    live_.clear();
-    for (LightPath& path : group_)
-      if (path.alive()) live_.push_back(&path);
-    while (!live_.empty()) {
-      hits_.resize(live_.size());
-      rays_.clear();
-      for (const LightPath* path : live_) rays_.push_back(&path->ray());
-      for (std::size_t i = 0; i < rays_.size(); i += TraceScene::kPacketSize)
-        context_.world.scene.intersectPacket(
-            std::span(rays_).subspan(i, std::min(TraceScene::kPacketSize, rays_.size() - i)), &hits_[i]);
-      for (std::size_t i = 0; i < live_.size(); ++i) live_[i]->arrive(hits_[i]);
-      std::erase_if(live_, [](const LightPath* path) { return !path->alive(); });
-    }
+  void step() {
+    hits_.resize(live_.size());
+    rays_.clear();
+    for (const LightPath* path : live_) rays_.push_back(&path->ray());
+    for (std::size_t i = 0; i < rays_.size(); i += TraceScene::kPacketSize)
+      context_.world.scene.intersectPacket(
+          std::span(rays_).subspan(i, std::min(TraceScene::kPacketSize, rays_.size() - i)), &hits_[i]);
+    for (std::size_t i = 0; i < live_.size(); ++i) live_[i]->arrive(hits_[i]);
+    std::erase_if(live_, [](const LightPath* path) { return !path->alive(); });
   }
 
   const LightPathContext& context_;
   const Emitter& emitter_;
-  const PhotonOrder& order_;
-  struct Emitted {
-    EmittedPhoton photon;
-    Sampler sampler;
-  };
-  std::vector<Emitted> photons_;
-  std::vector<std::uint32_t> keys_;  ///< by photon
   std::vector<LightPath> group_;
   std::vector<LightPath*> live_;  ///< into group_
   std::vector<const Ray*> rays_;  ///< by live path
@@ -108,21 +74,37 @@ std::vector<std::uint32_t> LightTracer::sharePhotons(std::uint32_t total) const 
   return shares;
 }
 
-void LightTracer::trace(std::size_t emitter, std::uint32_t begin, std::uint32_t end, PhotonTally& tally) const {
-  // Streams of pixels count up from 0; those of lights down from the top.
-  const std::uint32_t stream = 0xFFFFFFFFU - static_cast<std::uint32_t>(emitter);
-  const auto sampler_of = [&](std::uint32_t i) { return Sampler(world_.options.seed, stream, i); };
+Sampler LightTracer::samplerOf(std::size_t emitter, std::uint64_t photon) const {
+  // Streams of pixels count up from 0; those of lights down from the top, one for every 2³² photons.
+  const auto round = static_cast<std::uint32_t>(photon >> 32);
+  const std::uint32_t stream = 0xFFFFFFFFU - static_cast<std::uint32_t>(emitter + round * emitters_.size());
+  return Sampler(world_.options.seed, stream, static_cast<std::uint32_t>(photon));
+}
+
+void LightTracer::emit(std::size_t emitter, std::uint32_t begin, std::uint32_t end, PhotonWave& wave,
+                       PhotonTally& tally) const {
+  const PhotonOrder order(targets_->bounds());
+  for (std::uint32_t i = begin; i < end; ++i) {
+    Sampler sampler = samplerOf(emitter, wave.first() + i);
+    const EmittedPhoton photon = emitters_[emitter]->emit(sampler);
+    if (!isFinite(photon.flux)) {
+      ++tally.not_finite;
+      continue;
+    }
+    tally.ledger.emitted += dvec3(photon.flux);
+    if (photon.flux != vec3(0.0F)) wave.put(i, {photon, sampler}, order.keyOf(photon.origin, photon.dir));
+  }
+  tally.ledger.emitted_count += end - begin;
+}
+
+void LightTracer::trace(std::size_t emitter, const PhotonWave& wave, std::uint32_t begin, std::uint32_t end,
+                        PhotonTally& tally) const {
   CameraConnections connections(world_.walker, tally);
   const LightPathContext context{world_, is_target_, continue_after_diffuse_, keep_deposits_, tally, connections};
-  const PhotonOrder order(targets_->bounds());
-  PhotonRun run(context, *emitters_[emitter], order);
-  for (std::uint32_t i = begin; i < end;) {
-    const std::uint32_t wave = std::min(kWavePhotons, end - i);
-    run.traceWave(i, i + wave, sampler_of);
-    i += wave;
-  }
+  GroupTracer group(context, *emitters_[emitter]);
+  for (std::size_t i = begin; i < end; i += kGroupPhotons)
+    group.trace(wave, i, std::min<std::size_t>(i + kGroupPhotons, end));
   connections.flush();
-  tally.ledger.emitted_count += end - begin;
 }
 
 }  // namespace nephroid

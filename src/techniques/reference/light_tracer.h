@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "techniques/reference/photon_tally.h"
+#include "techniques/reference/photon_wave.h"
 #include "techniques/reference/world.h"
 
 namespace nephroid {
@@ -25,11 +26,18 @@ class LightTracer {
   std::span<const std::unique_ptr<Emitter>> emitters() const { return emitters_; }
   /// Photons of a batch for each emitter, by flux, at least one each; sums to `total` or a little more.
   std::vector<std::uint32_t> sharePhotons(std::uint32_t total) const;
-  /// Traces photons [begin, end) of an emitter; deterministic, safe from any thread.
-  void trace(std::size_t emitter, std::uint32_t begin, std::uint32_t end, PhotonTally& tally) const;
+  // All that follow are deterministic and safe from any thread, also for parts of one wave at once.
+
+  /// Emits photons [begin, end) of a wave of an emitter, counted from the wave's first.
+  void emit(std::size_t emitter, std::uint32_t begin, std::uint32_t end, PhotonWave& wave, PhotonTally& tally) const;
+  /// Traces photons [begin, end) of the order of a wave.
+  void trace(std::size_t emitter, const PhotonWave& wave, std::uint32_t begin, std::uint32_t end,
+             PhotonTally& tally) const;
   bool anyTarget() const { return !targets_->empty(); }
 
  private:
+  Sampler samplerOf(std::size_t emitter, std::uint64_t photon) const;
+
   const ReferenceWorld& world_;
   bool continue_after_diffuse_, keep_deposits_;
   std::vector<bool> is_target_;

@@ -1,8 +1,10 @@
 #include "techniques/reference/light_tracing_bench.h"
 
+#include <tbb/task_arena.h>
+
 #include <chrono>
 
-#include "techniques/reference/light_tracer.h"
+#include "techniques/reference/photon_batch.h"
 
 namespace nephroid {
 namespace {
@@ -31,33 +33,55 @@ std::uint64_t tracePlain(const TraceScene& scene, const std::vector<Ray>& rays) 
   return hits;
 }
 
+/// The rays of a batch in the order in which the light tracer traces them, or (not `sorted`) photon after photon in the
+/// order of their indices, as a tracer without packets makes them.
+std::vector<Ray> recordRays(ReferenceWorld& world, const LightTracer& tracer, std::span<const std::uint32_t> shares,
+                            bool sorted) {
+  std::vector<Ray> rays;
+  for (std::size_t e = 0; e < shares.size(); ++e) {
+    PhotonWave wave;
+    PhotonTally tally;
+    wave.reset(0, shares[e]);
+    tracer.emit(e, 0, shares[e], wave, tally);
+    wave.close(sorted);
+    const std::uint32_t step = sorted ? wave.size() : 1;
+    world.scene.setRecorder(&rays);
+    for (std::uint32_t i = 0; i < wave.size(); i += step) tracer.trace(e, wave, i, i + step, tally);
+    world.scene.setRecorder(nullptr);
+  }
+  return rays;
+}
+
 }  // namespace
 
 LightTracingMeasurement measureLightTracing(const SceneData& scene, const Camera& camera, std::uint32_t photons,
                                             int repetitions) {
-  ReferenceWorld world(scene, camera, 1024, 768, ReferenceOptions{});
+  constexpr int kWidth = 1024, kHeight = 768;
+  ReferenceWorld world(scene, camera, kWidth, kHeight, ReferenceOptions{});
   const LightTracer tracer(world, false);
   LightTracingMeasurement m;
   m.triangle_count = scene.triangleCount();
+  m.threads = tbb::this_task_arena::max_concurrency();
   if (tracer.emitters().empty()) return m;
   const std::vector<std::uint32_t> shares = tracer.sharePhotons(photons);
-  const auto trace = [&] {
-    PhotonTally tally;
-    for (std::size_t e = 0; e < shares.size(); ++e) tracer.trace(e, 0, shares[e], tally);
-    return tally.rays;
-  };
   for (const std::uint32_t share : shares) m.photons += share;
-  std::vector<Ray> rays;
-  world.scene.setRecorder(&rays);
-  m.rays = trace();
-  world.scene.setRecorder(nullptr);
-  volatile std::uint64_t keep = tracePlain(world.scene, rays);
+  const std::vector<Ray> by_photon = recordRays(world, tracer, shares, false);
+  const std::vector<Ray> sorted = recordRays(world, tracer, shares, true);
+  m.rays = sorted.size();
+  PhotonBatch batch(tracer, photons, std::size_t{kWidth} * kHeight);
+  tbb::task_arena one(1), all(m.threads);
+  const auto trace = [&] { batch.trace(0, [] { return false; }); };
+  const auto rate = [&](auto&& work) { return static_cast<double>(m.rays) / secondsOf(work); };
+  volatile std::uint64_t keep = 0;
+  one.execute(trace);
   for (int i = 0; i < repetitions; ++i) {
-    const double traced = secondsOf([&] { keep = trace(); });
-    const double plain = secondsOf([&] { keep = tracePlain(world.scene, rays); });
-    m.tracer_rays_per_s.push_back(static_cast<double>(m.rays) / traced);
-    m.plain_rays_per_s.push_back(static_cast<double>(rays.size()) / plain);
+    m.tracer_rays_per_s.push_back(rate([&] { one.execute(trace); }));
+    m.plain_rays_per_s.push_back(rate([&] { keep = tracePlain(world.scene, by_photon); }));
+    m.plain_sorted_rays_per_s.push_back(rate([&] { keep = tracePlain(world.scene, sorted); }));
+    m.tracer_rays_per_s_all.push_back(rate([&] { all.execute(trace); }));
     m.ratio.push_back(m.tracer_rays_per_s.back() / m.plain_rays_per_s.back());
+    m.ratio_sorted.push_back(m.tracer_rays_per_s.back() / m.plain_sorted_rays_per_s.back());
+    m.speedup.push_back(m.tracer_rays_per_s_all.back() / m.tracer_rays_per_s.back());
   }
   static_cast<void>(keep);
   return m;

@@ -7,10 +7,10 @@ namespace nephroid {
 namespace {
 
 /// Steps of the curve along each axis, as a power of two: cells about as many as the photons of a wave on a surface.
-constexpr unsigned kBitsPerAxis = 7;
+constexpr unsigned kBitsPerAxis = 9;
 /// Bits of the key that one pass of the sort looks at.
-constexpr unsigned kBitsPerPass = 11;
-static_assert(3 * kBitsPerAxis <= 2 * kBitsPerPass);
+constexpr unsigned kBitsPerPass = 9;
+static_assert(3 * kBitsPerAxis <= 3 * kBitsPerPass);
 
 /// The lower ten bits of x, two zeros between each two.
 std::uint32_t spreadBits(std::uint32_t x) {
@@ -40,10 +40,10 @@ std::uint32_t PhotonOrder::keyOf(vec3 origin, vec3 dir) const {
 }
 
 std::vector<std::uint32_t> PhotonOrder::sort(std::span<const std::uint32_t> keys) {
-  // Counting sort by the lower half of the key, then, stable, by the upper.
+  // Counting sort by the lowest third of the key, then, stable, by the others.
   std::vector<std::uint32_t> order(keys.size()), previous(keys.size());
   std::iota(order.begin(), order.end(), 0U);
-  for (const unsigned shift : {0U, kBitsPerPass}) {
+  for (const unsigned shift : {0U, kBitsPerPass, 2 * kBitsPerPass}) {
     const auto digit = [&](std::uint32_t i) { return (keys[i] >> shift) & ((1U << kBitsPerPass) - 1); };
     std::array<std::uint32_t, (1U << kBitsPerPass) + 1> begin{};
     for (std::uint32_t i = 0; i < keys.size(); ++i) ++begin[digit(i) + 1];

@@ -1,7 +1,6 @@
 #include "techniques/reference/reference.h"
 
 #include <fmt/format.h>
-#include <tbb/blocked_range2d.h>
 #include <tbb/global_control.h>
 #include <tbb/parallel_for.h>
 #include <tbb/task_arena.h>
@@ -14,18 +13,12 @@
 #include "nephroid/error.h"
 #include "techniques/layers.h"
 #include "techniques/reference/geometry_layers.h"
-#include "techniques/reference/light_tracer.h"
 #include "techniques/reference/path_tracer.h"
+#include "techniques/reference/photon_batch.h"
 
 namespace nephroid {
 namespace {
 
-/// Photons of one task: long enough to make scheduling cheap, short enough to stop promptly.
-constexpr std::uint32_t kChunkPhotons = 4096;
-/// Photons between two looks at the clock. Its splats are held in memory: 32 bytes each, a few a photon at most.
-constexpr std::uint32_t kBatchPhotons = 1U << 18;
-/// Bands of the picture into which the splats of a batch are summed in parallel.
-constexpr std::size_t kSplatBands = 16;
 /// Photons under the first kernel, were they spread evenly: fewer is noise, more is blur.
 constexpr float kGatherPhotons = 10.0F;
 /// Share of the photons that a shrinking kernel keeps; 2/3 balances bias and variance (Knaus & Zwicker 2011).
@@ -98,11 +91,16 @@ class ReferenceRender {
     photons_budget_ = settings_.photons ? settings_.photons : timed_only ? kUnlimited : kDefaultPhotons;
     if (!needs_.eyeTraced(world_.options.light_tracing)) samples_budget_ = 0;
     if (!light_tracer_) photons_budget_ = 0;
-    if (photons_budget_ > 0 && photons_budget_ < kUnlimited) {
-      const std::uint64_t batches = (photons_budget_ + kBatchPhotons - 1) / kBatchPhotons;
-      batch_photons_ = static_cast<std::uint32_t>((photons_budget_ + batches - 1) / batches);
-    }
-    if (light_tracer_) batch_shares_ = light_tracer_->sharePhotons(batch_photons_);
+    if (light_tracer_) makePhotonBatch(photons_budget_ < kUnlimited);
+  }
+
+  /// Equal batches, so that each counts the same.
+  void makePhotonBatch(bool limited) {
+    constexpr std::uint64_t kMax = PhotonBatch::kMaxPhotons;
+    const std::uint64_t batches = limited ? (photons_budget_ + kMax - 1) / kMax : 1;
+    const std::uint64_t photons = limited ? (photons_budget_ + batches - 1) / batches : kMax;
+    const std::size_t pixels = static_cast<std::size_t>(settings_.width) * settings_.height;
+    photon_batch_ = std::make_unique<PhotonBatch>(*light_tracer_, static_cast<std::uint32_t>(photons), pixels);
   }
 
   bool stopped() const { return stop_ && stop_->requested(); }
@@ -164,60 +162,25 @@ class ReferenceRender {
     ++samples_done_;
   }
 
-  /// One batch, in chunks whose splats are summed in their order.
   void tracePhotons() {
-    struct Chunk {
-      std::size_t emitter;
-      std::uint32_t begin, end;
-      PhotonTally tally;
-      std::vector<std::uint32_t> band_begin;
-    };
-    std::vector<Chunk> chunks;
-    const auto batch = static_cast<std::uint32_t>(batches_done_);
-    for (std::size_t e = 0; e < batch_shares_.size(); ++e) {
-      const std::uint32_t first = batch * batch_shares_[e];
-      for (std::uint32_t i = 0; i < batch_shares_[e]; i += kChunkPhotons)
-        chunks.push_back({e, first + i, first + std::min(i + kChunkPhotons, batch_shares_[e]), {}, {}});
-    }
-    const std::size_t pixels = static_cast<std::size_t>(settings_.width) * settings_.height;
-    const std::size_t band_pixels = (pixels + kSplatBands - 1) / kSplatBands;
-    std::atomic<bool> complete{true};
-    tbb::parallel_for(std::size_t{0}, chunks.size(), [&](std::size_t i) {
-      Chunk& chunk = chunks[i];
-      if (stopped()) {
-        complete = false;
-        return;
-      }
-      light_tracer_->trace(chunk.emitter, chunk.begin, chunk.end, chunk.tally);
-      sortByBand(chunk.tally.splats, band_pixels, chunk.band_begin);
-    });
-    // Half a batch would favour some lights over others: it is dropped.
-    if (!complete) return;
-    tbb::parallel_for(std::size_t{0}, kSplatBands, [&](std::size_t band) {
-      for (const Chunk& chunk : chunks) {
-        const float scale = 1.0F / static_cast<float>(batch_shares_[chunk.emitter]);
-        for (std::uint32_t s = chunk.band_begin[band]; s < chunk.band_begin[band + 1]; ++s)
-          addSplat(chunk.tally.splats[s], scale);
-      }
-    });
-    for (const Chunk& chunk : chunks) {
+    if (!photon_batch_->trace(batches_done_, [&] { return stopped(); })) return;
+    photon_batch_->visitSplats([&](const Splat& splat, float scale) { addSplat(splat, scale); });
+    for (const PhotonBatch::Chunk& chunk : photon_batch_->chunks()) {
       ledgers_[chunk.emitter].add(chunk.tally.ledger);
       rays_ += chunk.tally.rays;
       not_finite_ += chunk.tally.not_finite;
-      photons_done_ += chunk.end - chunk.begin;
+      photons_done_ += static_cast<std::uint64_t>(chunk.tally.ledger.emitted_count);
     }
     ++batches_done_;
-    if (gather_) {
-      std::vector<GridPhoton> deposits;
-      for (Chunk& chunk : chunks) {
-        const float scale = 1.0F / static_cast<float>(batch_shares_[chunk.emitter]);
-        for (GridPhoton& photon : chunk.tally.deposits) {
-          photon.flux *= scale;
-          deposits.push_back(photon);
-        }
+    if (!gather_) return;
+    std::vector<GridPhoton> deposits;
+    for (PhotonBatch::Chunk& chunk : photon_batch_->chunks()) {
+      for (GridPhoton& photon : chunk.tally.deposits) {
+        photon.flux *= photon_batch_->scaleOf(chunk);
+        deposits.push_back(photon);
       }
-      replaceCaustics(deposits);
     }
+    replaceCaustics(deposits);
   }
 
   /// The photons of the latest batch, under a kernel that shrinks from batch to batch (Knaus & Zwicker 2011, eq. 15):
@@ -233,17 +196,6 @@ class ReferenceRender {
     }
     const auto radius = static_cast<float>(std::sqrt(radius_squared_));
     caustics_ = radius > 0.0F ? PhotonGrid(deposits, radius) : PhotonGrid();
-  }
-
-  static void sortByBand(std::vector<Splat>& splats, std::size_t band_pixels, std::vector<std::uint32_t>& band_begin) {
-    // Counting sort: stable, so that the sums keep the order of the photons.
-    band_begin.assign(kSplatBands + 1, 0);
-    for (const Splat& splat : splats) ++band_begin[splat.pixel / band_pixels + 1];
-    for (std::size_t band = 0; band < kSplatBands; ++band) band_begin[band + 1] += band_begin[band];
-    std::vector<std::uint32_t> next(band_begin.begin(), band_begin.end() - 1);
-    std::vector<Splat> sorted(splats.size());
-    for (const Splat& splat : splats) sorted[next[splat.pixel / band_pixels]++] = splat;
-    splats = std::move(sorted);
   }
 
   void addSplat(const Splat& splat, float scale) {
@@ -377,6 +329,7 @@ class ReferenceRender {
   Film film_;
   PathTracer path_tracer_;
   std::unique_ptr<LightTracer> light_tracer_;
+  std::unique_ptr<PhotonBatch> photon_batch_;
   std::vector<Ledger> ledgers_;
   std::vector<Layer> geometry_;
   std::vector<StageTime> stages_;
@@ -385,8 +338,6 @@ class ReferenceRender {
   PhotonGrid caustics_;
   float first_radius_ = 0.0F;
   double radius_squared_ = 0.0;
-  std::vector<std::uint32_t> batch_shares_;
-  std::uint32_t batch_photons_ = kBatchPhotons;
   std::uint64_t samples_budget_ = 0, photons_budget_ = 0, samples_done_ = 0, photons_done_ = 0, batches_done_ = 0;
   std::uint64_t rays_ = 0, not_finite_ = 0;
   double path_seconds_ = 0, light_seconds_ = 0;
