@@ -167,6 +167,30 @@ const Metric& findMetric(std::string_view name) {
   throw UsageError(fmt::format("unknown metric '{}'{} (known: {})", name, hint, fmt::join(names, ", ")));
 }
 
+NotFinitePixels excludeNotFinite(const Image& image, const Image& reference, std::span<std::uint8_t> mask) {
+  checkSizes(image, reference, mask);
+  NotFinitePixels found;
+  std::size_t left = 0;
+  std::size_t index = 0;
+  for (int y = 0; y < image.height; ++y)
+    for (int x = 0; x < image.width; ++x, ++index) {
+      if (mask[index] != kSelected) continue;
+      const bool image_is_finite = isFinite(image.rgb(x, y)), reference_is_finite = isFinite(reference.rgb(x, y));
+      if (!image_is_finite) ++found.in_image;
+      if (!reference_is_finite) ++found.in_reference;
+      if (image_is_finite && reference_is_finite)
+        ++left;
+      else
+        mask[index] = 0;
+    }
+  if (left == 0)
+    throw InputError(
+        fmt::format("nothing to measure: of the pixels that count, {} of the image and {} of the reference are NaN or "
+                    "infinite, and none is finite in both",
+                    found.in_image, found.in_reference));
+  return found;
+}
+
 dvec3 maskedMean(const Image& image, std::span<const std::uint8_t> mask) {
   checkMask(image, mask);
   dvec3 sum(0.0);

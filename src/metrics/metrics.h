@@ -25,6 +25,16 @@ const Metric& findMetric(std::string_view name);
 /// @throws InputError naming the layer that the file lacks
 Image evaluateLayerExpression(const LayeredImage& image, std::string_view expression);
 
+/// How many pixels that the mask selects hold a NaN or an infinity.
+struct NotFinitePixels {
+  std::size_t in_image = 0, in_reference = 0;  ///< a pixel may be in both
+};
+/// Takes pixels that are not finite in either picture out of the mask: an error there is no number, and one of them
+/// would hide that of all others. Whoever asks must tell how many there were.
+/// @param mask  one entry per pixel
+/// @throws InputError if sizes differ or no pixel remains
+NotFinitePixels excludeNotFinite(const Image& image, const Image& reference, std::span<std::uint8_t> mask);
+
 /// Means over the mask, per channel.
 dvec3 maskedMean(const Image& image, std::span<const std::uint8_t> mask);
 

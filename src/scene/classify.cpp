@@ -4,7 +4,7 @@
 
 #include <algorithm>
 
-#include "scene/texture.h"
+#include "scene/material_texels.h"
 
 namespace nephroid {
 namespace {
@@ -67,27 +67,6 @@ Classification judge(const Material& material, float specular_alpha) {
   return c;
 }
 
-bool isTextured(const Material& m) {
-  return m.metallic_roughness_texture.valid() || m.transmission_texture.valid() || m.specular_texture.valid() ||
-         m.specular_color_texture.valid() || m.base_color_texture.valid();
-}
-
-/// The material as it is at one place of its textures.
-Material resolveAt(const SceneData& scene, const Material& material, vec2 uv) {
-  const auto texel = [&](const TextureRef& reference, bool srgb) {
-    return reference.valid() ? sampleTexture(scene.images[reference.image], reference, uv, srgb) : vec4(1.0F);
-  };
-  Material m = material;
-  m.base_color *= texel(material.base_color_texture, true);
-  const vec4 metallic_roughness = texel(material.metallic_roughness_texture, false);
-  m.roughness *= metallic_roughness.y;
-  m.metallic *= metallic_roughness.z;
-  m.transmission *= texel(material.transmission_texture, false).x;
-  m.specular_factor *= texel(material.specular_texture, false).w;
-  m.specular_color *= vec3(texel(material.specular_color_texture, true));
-  return m;
-}
-
 }  // namespace
 
 float glossOf(float alpha, float transmission) {
@@ -102,32 +81,32 @@ Classification classify(const Material& material, float specular_alpha) {
 }
 
 Classification classify(const SceneData& scene, const Material& material, float specular_alpha) {
-  if (!isTextured(material)) return classify(material, specular_alpha);
-  // Fine enough to find any part that is seen as a part, coarse enough to cost nothing.
-  constexpr int kGrid = 64;
+  if (!hasLobeTextures(material)) return classify(material, specular_alpha);
   Classification most;
   Material most_at;
   float diffuse_albedo = 0.0F, best = -1.0F;
   bool generator = false, weak = false, receiver = false;
-  for (int y = 0; y < kGrid; ++y) {
-    for (int x = 0; x < kGrid; ++x) {
-      const vec2 uv((static_cast<float>(x) + 0.5F) / kGrid, (static_cast<float>(y) + 0.5F) / kGrid);
-      const Material at = resolveAt(scene, material, uv);
-      const Classification c = judge(at, specular_alpha);
-      generator = generator || c.is_generator;
-      weak = weak || c.is_weak_generator;
-      receiver = receiver || c.is_receiver;
-      diffuse_albedo = std::max(diffuse_albedo, c.diffuse_albedo);
-      const float specular = c.specular_albedo + c.specular_transmission;
-      if (specular > best) best = specular, most = c, most_at = at;
-    }
-  }
+  visitTexels(scene, material, [&](const Material& at) {
+    const Classification c = judge(at, specular_alpha);
+    generator = generator || c.is_generator;
+    weak = weak || c.is_weak_generator;
+    receiver = receiver || c.is_receiver;
+    diffuse_albedo = std::max(diffuse_albedo, c.diffuse_albedo);
+    const float specular = c.specular_albedo + c.specular_transmission;
+    if (specular > best) best = specular, most = c, most_at = at;
+  });
   most.diffuse_albedo = diffuse_albedo;
   most.is_generator = generator;
   most.is_weak_generator = weak && !generator;
   most.is_receiver = receiver;
   most.reason = describe(most_at, most, specular_alpha) + " (textured)";
   return most;
+}
+
+std::vector<Classification> classifyMaterials(const SceneData& scene, float specular_alpha) {
+  std::vector<Classification> classes;
+  for (const Material& material : scene.materials) classes.push_back(classify(scene, material, specular_alpha));
+  return classes;
 }
 
 }  // namespace nephroid

@@ -35,8 +35,12 @@ struct Classification {
 /// From the material's factors alone, as if it had no textures.
 Classification classify(const Material& material, float specular_alpha = kDefaultSpecularAlpha);
 
-/// With its textures: a surface is a generator or a receiver if any part of it is. The numbers are those of the most
-/// specular texel among a 64 × 64 grid, but for `diffuse_albedo`, which is the largest.
+/// With its textures: a surface is a generator or a receiver if any texel of it is (see visitTexels). The numbers are
+/// those of the most specular texel, but for `diffuse_albedo`, which is the largest.
+/// @note  looks at every texel; whoever asks for many instances takes classifyMaterials
 Classification classify(const SceneData& scene, const Material& material, float specular_alpha = kDefaultSpecularAlpha);
+
+/// Of every material of the scene, with its textures: by index into `scene.materials`.
+std::vector<Classification> classifyMaterials(const SceneData& scene, float specular_alpha = kDefaultSpecularAlpha);
 
 }  // namespace nephroid

@@ -17,8 +17,14 @@ bool hasLight(const SceneData& scene) {
 }
 
 bool hasReceiver(const SceneData& scene) {
-  return std::ranges::any_of(scene.instances,
-                             [&](const Instance& i) { return classify(scene, scene.materialOf(i)).is_receiver; });
+  // Each material is judged once at most, and none after the first that receives: it may have large textures.
+  std::vector<bool> is_known(scene.materials.size());
+  return std::ranges::any_of(scene.instances, [&](const Instance& instance) {
+    const std::uint32_t material = scene.meshes[instance.mesh].material;
+    if (is_known[material]) return false;
+    is_known[material] = true;
+    return classify(scene, scene.materials[material]).is_receiver;
+  });
 }
 
 void addSun(SceneData& scene) {

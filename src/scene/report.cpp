@@ -183,8 +183,7 @@ void diagnoseGlass(const SceneData& scene, SceneReport& report) {
 }  // namespace
 
 SceneReport inspectScene(const SceneData& scene, float specular_alpha) {
-  std::vector<Classification> classes;
-  for (const Material& material : scene.materials) classes.push_back(classify(scene, material, specular_alpha));
+  const std::vector<Classification> classes = classifyMaterials(scene, specular_alpha);
   std::vector<MeshTopology> topologies;
   for (const Mesh& mesh : scene.meshes) topologies.push_back(analyseMesh(mesh));
   SceneReport report;

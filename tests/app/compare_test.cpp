@@ -2,6 +2,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <limits>
 #include <nlohmann/json.hpp>
 
 #include "app/process.h"
@@ -11,6 +12,8 @@ namespace nephroid::test {
 namespace {
 
 using ::testing::HasSubstr;
+using ::testing::Not;
+using ::testing::StartsWith;
 
 /// Layers of one constant colour each.
 void writeConstant(const std::string& path, int width, int height,
@@ -85,6 +88,107 @@ TEST(Compare, UnknownMetricIsWrongUsage) {
       runNephroid({"compare", folder.file("a.exr"), folder.file("a.exr"), "--metric", "beauty"});
   EXPECT_EQ(result.exit_code, 2);
   EXPECT_THAT(result.err, HasSubstr("rmse"));
+}
+
+constexpr float kNan = std::numeric_limits<float>::quiet_NaN(), kInf = std::numeric_limits<float>::infinity();
+
+/// One row of grey pixels in `beauty`.
+void writeRow(const std::string& path, const std::vector<float>& values) {
+  const int width = static_cast<int>(values.size());
+  LayeredImage image{.width = width, .height = 1};
+  image.layers.push_back({"beauty", Image(width, 1, 3)});
+  for (int x = 0; x < width; ++x) image.layers[0].image.setRgb(x, 0, vec3(values[static_cast<std::size_t>(x)]));
+  writeExr(path, image);
+}
+
+TEST(Compare, LeavesOutAndCountsPixelsThatAreNotFinite) {
+  const TempFolder folder;
+  writeRow(folder.file("a.exr"), {kNan, 3.0F, kInf, 3.0F});
+  writeRow(folder.file("b.exr"), {1.0F, 2.0F, kNan, kNan});
+  const ProcessResult result = runNephroid({"compare", folder.file("a.exr"), folder.file("b.exr"), "--json"});
+  ASSERT_EQ(result.exit_code, 0) << result.err;
+  const nlohmann::json json = nlohmann::json::parse(result.out);
+  EXPECT_EQ(json["pixels"], 1);
+  EXPECT_EQ(json["not_finite"]["image"], 2);
+  EXPECT_EQ(json["not_finite"]["reference"], 2);
+  EXPECT_NEAR(json["metrics"]["rmse"].get<double>(), 1.0, 1e-6);
+  EXPECT_DOUBLE_EQ(json["ratio"][2].get<double>(), 1.5);
+  EXPECT_THAT(result.err, HasSubstr("warning: " + folder.file("a.exr") + ": pixels that are NaN or infinite"));
+  EXPECT_THAT(result.err, HasSubstr("warning: " + folder.file("b.exr")));
+  const ProcessResult text = runNephroid({"compare", folder.file("a.exr"), folder.file("b.exr")});
+  EXPECT_THAT(text.out, HasSubstr("1 pixels, left out as not finite: 2 of the image, 2 of the reference"));
+  EXPECT_THAT(text.out, Not(HasSubstr("nan")));
+}
+
+TEST(Compare, SaysNothingOfPixelsThatAreNotFiniteWhereThereAreNone) {
+  const TempFolder folder;
+  writeRow(folder.file("a.exr"), {kNan, 3.0F});
+  writeRow(folder.file("b.exr"), {1.0F, 2.0F});
+  Image mask(2, 1, 3, 1.0F);
+  mask.setRgb(0, 0, vec3(0.0F));
+  writePng(folder.file("m.png"), mask);
+  const ProcessResult result =
+      runNephroid({"compare", folder.file("a.exr"), folder.file("b.exr"), "--mask", folder.file("m.png")});
+  EXPECT_EQ(result.exit_code, 0);
+  EXPECT_EQ(result.err, "");
+  EXPECT_THAT(result.out, Not(HasSubstr("finite")));
+}
+
+/// Exit code 3, nothing on stdout, one line "error: …" on stderr that holds `text`.
+void expectBadInput(const std::vector<std::string>& arguments, const std::string& text) {
+  const ProcessResult result = runNephroid(arguments);
+  EXPECT_EQ(result.exit_code, 3) << result.err;
+  EXPECT_EQ(result.out, "");
+  EXPECT_THAT(result.err, StartsWith("error: "));
+  EXPECT_THAT(result.err, HasSubstr(text));
+  EXPECT_EQ(countLines(result.err), 1) << result.err;
+}
+
+TEST(Compare, PicturesWithoutOneFinitePixelInCommonAreBadInput) {
+  const TempFolder folder;
+  writeRow(folder.file("a.exr"), {kNan, 3.0F});
+  writeRow(folder.file("b.exr"), {1.0F, kInf});
+  expectBadInput({"compare", folder.file("a.exr"), folder.file("b.exr")}, "none is finite in both");
+  expectBadInput({"compare", folder.file("a.exr"), folder.file("b.exr"), "--json"}, "none is finite in both");
+}
+
+TEST(Compare, MasksThatSelectNothingOrDoNotFitAreBadInput) {
+  const TempFolder folder;
+  writeRow(folder.file("a.exr"), {1.0F, 2.0F});
+  const auto compareWithMask = [&](const char* mask) {
+    return std::vector<std::string>{"compare", folder.file("a.exr"), folder.file("a.exr"), "--mask", folder.file(mask)};
+  };
+  writePng(folder.file("grey.png"), Image(2, 1, 3, 0.5F));
+  expectBadInput(compareWithMask("grey.png"), "no pixel has the value 255");
+  writePng(folder.file("wide.png"), Image(3, 1, 3, 1.0F));
+  expectBadInput(compareWithMask("wide.png"), "3x1 px");
+  expectBadInput(compareWithMask("a.exr"), "8-bit PNG");
+  expectBadInput(compareWithMask("none.png"), "none.png");
+}
+
+TEST(Compare, PicturesWithoutACommonLayerAreBadInput) {
+  const TempFolder folder;
+  writeConstant(folder.file("a.exr"), 2, 2, {{"direct", 1.0F}});
+  writeConstant(folder.file("b.exr"), 2, 2, {{"caustic", 1.0F}});
+  const std::string a = folder.file("a.exr"), b = folder.file("b.exr");
+  expectBadInput({"compare", a, b}, "no layer in common");
+  expectBadInput({"compare", a, b, "--layer", "direct"}, b + ": layer 'direct' is not in the image");
+  expectBadInput({"compare", a, b, "--layer", "direct+indirect"}, a + ": layer 'indirect' is not in the image");
+  expectBadInput({"compare", a, a, "--layer", "direct+"}, "layer ''");
+}
+
+// A ratio to black is infinite, or none at all if both are black: JSON has no word for either.
+TEST(Compare, JsonIsValidWhereFiguresAreNotFinite) {
+  const TempFolder folder;
+  writeRow(folder.file("a.exr"), {1.0F, 0.0F});
+  writeRow(folder.file("b\xff.exr"), {0.0F, 0.0F});
+  const ProcessResult result = runNephroid({"compare", folder.file("a.exr"), folder.file("b\xff.exr"), "--json"});
+  ASSERT_EQ(result.exit_code, 0) << result.err;
+  const nlohmann::json json = nlohmann::json::parse(result.out);
+  EXPECT_TRUE(json["ratio"][0].is_null());
+  EXPECT_TRUE(json["metrics"]["nrmse"].is_null());
+  EXPECT_EQ(json["mean"][0], 0.5);
+  EXPECT_THAT(json["reference"].get<std::string>(), HasSubstr("b"));
 }
 
 }  // namespace

@@ -109,6 +109,34 @@ TEST(FindMetric, NamesTheNearest) {
   }
 }
 
+TEST(ExcludeNotFinite, CountsAndLeavesOutPixelsOfEitherPicture) {
+  constexpr float kNan = std::numeric_limits<float>::quiet_NaN(), kInf = std::numeric_limits<float>::infinity();
+  const Image image = makeRow({kNan, 1.0F, kInf, 1.0F, -kInf, 3.0F}), reference = makeRow({1, kNan, kInf, 1, 1, 1});
+  std::vector<std::uint8_t> mask{255, 255, 255, 255, 0, 255};
+  const NotFinitePixels found = excludeNotFinite(image, reference, mask);
+  EXPECT_EQ(found.in_image, 2U);  // the fifth does not count
+  EXPECT_EQ(found.in_reference, 2U);
+  EXPECT_EQ(mask, (std::vector<std::uint8_t>{0, 0, 0, 255, 0, 255}));
+  for (const Metric& metric : metrics()) EXPECT_TRUE(std::isfinite(metric.compute(image, reference, mask)));
+  EXPECT_DOUBLE_EQ(compute("rmse", image, reference, mask), std::sqrt(2.0));
+}
+
+TEST(ExcludeNotFinite, LooksAtEveryChannel) {
+  Image image(3, 1, 3, 1.0F);
+  for (int c = 0; c < 2; ++c) image.at(c, 0)[c + 1] = std::numeric_limits<float>::quiet_NaN();
+  std::vector<std::uint8_t> mask(3, 255);
+  EXPECT_EQ(excludeNotFinite(image, Image(3, 1, 3, 1.0F), mask).in_image, 2U);
+  EXPECT_EQ(mask, (std::vector<std::uint8_t>{0, 0, 255}));
+}
+
+TEST(ExcludeNotFinite, RefusesPicturesOfWhichNothingRemains) {
+  const Image bad = makeRow({std::numeric_limits<float>::quiet_NaN(), 1.0F}), good = makeRow({1.0F, 1.0F});
+  std::vector<std::uint8_t> mask{255, 0}, short_mask{255};
+  EXPECT_THROW(excludeNotFinite(bad, good, mask), InputError);
+  EXPECT_THROW(excludeNotFinite(good, good, short_mask), InputError);
+  EXPECT_THROW(excludeNotFinite(good, makeRow({1.0F}), mask), InputError);
+}
+
 TEST(MaskedMean, IsPerChannel) {
   Image image(2, 1, 3);
   image.setRgb(0, 0, {1.0F, 2.0F, 3.0F});

@@ -26,7 +26,8 @@ struct CompareOptions {
 
 struct Comparison {
   std::string layer, reference_layer;
-  std::size_t pixel_count = 0;
+  std::size_t pixel_count = 0;  ///< those that were compared
+  NotFinitePixels not_finite;   ///< those that were left out
   dvec3 image_mean{0}, reference_mean{0};
   std::vector<std::pair<std::string, double>> values;
 };
@@ -68,6 +69,22 @@ void checkSameSize(const Image& image, const std::string& path, int width, int h
                                image.width, image.height, reference, width, height));
 }
 
+/// excludeNotFinite, said on stderr, with the files' names in its messages.
+NotFinitePixels leaveOutNotFinite(const Image& image, const Image& reference, std::vector<std::uint8_t>& mask,
+                                  const CompareOptions& options) {
+  try {
+    const NotFinitePixels found = excludeNotFinite(image, reference, mask);
+    const auto warn = [](const std::string& path, std::size_t count) {
+      if (count > 0) warnOnce(fmt::format("{}: pixels that are NaN or infinite, left out: {}", path, count));
+    };
+    warn(options.image, found.in_image);
+    warn(options.reference, found.in_reference);
+    return found;
+  } catch (const InputError& error) {
+    throw InputError(fmt::format("{} and {}: {}", options.image, options.reference, error.what()));
+  }
+}
+
 /// 255 where a pixel counts, 0 elsewhere.
 std::vector<std::uint8_t> loadMask(const std::string& path, const Image& image, const std::string& image_path) {
   std::vector<std::uint8_t> mask(static_cast<std::size_t>(image.width) * image.height, 255);
@@ -104,7 +121,8 @@ Comparison comparePictures(const CompareOptions& options) {
     throw InputError(fmt::format("{} has {} channels in '{}', but {} has {} in '{}'; compare like with like",
                                  options.image, image.channels, comparison.layer, options.reference, reference.channels,
                                  comparison.reference_layer));
-  const std::vector<std::uint8_t> mask = loadMask(options.mask, image, options.image);
+  std::vector<std::uint8_t> mask = loadMask(options.mask, image, options.image);
+  comparison.not_finite = leaveOutNotFinite(image, reference, mask, options);
   comparison.pixel_count = static_cast<std::size_t>(std::count(mask.begin(), mask.end(), 255));
   comparison.image_mean = maskedMean(image, mask);
   comparison.reference_mean = maskedMean(reference, mask);
@@ -125,28 +143,37 @@ std::string formatComparison(const Comparison& comparison) {
   };
   std::string text = fmt::format("layer {}", comparison.layer);
   if (comparison.reference_layer != comparison.layer) text += fmt::format(" against {}", comparison.reference_layer);
-  text += fmt::format(", {} pixels\n{:<16} {:>12} {:>12} {:>12}\n", comparison.pixel_count, "", "R", "G", "B");
+  text += fmt::format(", {} pixels", comparison.pixel_count);
+  const NotFinitePixels& bad = comparison.not_finite;
+  if (bad.in_image + bad.in_reference > 0)
+    text +=
+        fmt::format(", left out as not finite: {} of the image, {} of the reference", bad.in_image, bad.in_reference);
+  text += fmt::format("\n{:<16} {:>12} {:>12} {:>12}\n", "", "R", "G", "B");
   text += row("mean", comparison.image_mean) + row("reference mean", comparison.reference_mean);
   text += row("ratio", meanRatio(comparison));
   for (const auto& [name, value] : comparison.values) text += fmt::format("{:<16} {:>12.6g}\n", name, value);
   return text;
 }
 
+/// What JSON cannot say, as a ratio to black, becomes null.
 std::string formatComparisonJson(const CompareOptions& options, const Comparison& comparison) {
   const auto triple = [](const dvec3& v) { return std::array<double, 3>{v.x, v.y, v.z}; };
   nlohmann::ordered_json values = nlohmann::ordered_json::object();
   for (const auto& [name, value] : comparison.values) values[name] = value;
-  const nlohmann::ordered_json json{{"image", options.image},
-                                    {"reference", options.reference},
-                                    {"mask", options.mask},
-                                    {"layer", comparison.layer},
-                                    {"reference_layer", comparison.reference_layer},
-                                    {"pixels", comparison.pixel_count},
-                                    {"mean", triple(comparison.image_mean)},
-                                    {"reference_mean", triple(comparison.reference_mean)},
-                                    {"ratio", triple(meanRatio(comparison))},
-                                    {"metrics", values}};
-  return json.dump(2) + "\n";
+  const nlohmann::ordered_json json{
+      {"image", options.image},
+      {"reference", options.reference},
+      {"mask", options.mask},
+      {"layer", comparison.layer},
+      {"reference_layer", comparison.reference_layer},
+      {"pixels", comparison.pixel_count},
+      {"not_finite", {{"image", comparison.not_finite.in_image}, {"reference", comparison.not_finite.in_reference}}},
+      {"mean", triple(comparison.image_mean)},
+      {"reference_mean", triple(comparison.reference_mean)},
+      {"ratio", triple(meanRatio(comparison))},
+      {"metrics", values}};
+  // Names of files need not be UTF-8, which JSON must be.
+  return json.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace) + "\n";
 }
 
 ExitCode runCompare(const CompareOptions& options) {
@@ -166,6 +193,7 @@ std::string metricNames() {
 std::string describeMetrics() {
   std::string text = "Metrics:\n";
   for (const Metric& metric : metrics()) text += fmt::format("  {:<10} {}\n", metric.name, metric.text);
+  text += "Pixels that are NaN or infinite in either picture are left out, counted and warned about.\n";
   return text + "\n" + kExamples;
 }
 

@@ -55,8 +55,9 @@ class GroupTracer {
 LightTracer::LightTracer(const ReferenceWorld& world, bool continue_after_diffuse, bool keep_deposits)
     : world_(world), continue_after_diffuse_(continue_after_diffuse), keep_deposits_(keep_deposits) {
   const SceneData& data = world.scene.scene();
+  const std::vector<Classification> classes = classifyMaterials(data, world.options.specular_alpha);
   for (const Instance& instance : data.instances) {
-    const Classification c = classify(data, data.materialOf(instance), world.options.specular_alpha);
+    const Classification& c = classes[data.meshes[instance.mesh].material];
     is_target_.push_back(instance.casts && (c.is_generator || c.is_weak_generator));
   }
   targets_ = std::make_unique<EmissionTargets>(world.scene, is_target_);

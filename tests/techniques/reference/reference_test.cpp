@@ -232,6 +232,39 @@ TEST(Reference, LedgerClosesForEveryKindOfMaterialAndLight) {
   }
 }
 
+// The flux of the sun through the ball's outline, 1.9e38 W, fits a float (3.4e38); times the weight of some wavelengths
+// (up to about 3) it does not. The flux before that is what is lost. The camera looks away: no splat overflows, too.
+TEST(Reference, LedgerClosesWhereFluxOverflows) {
+  Material dispersive = makeGlass(1.5F);
+  dispersive.dispersion = 1.0F;
+  SceneData scene = test::makeBallScene(dispersive);
+  scene.lights.push_back(test::makeSun(vec3(-0.4F, -1, -0.2F), vec3(6e37F)));
+  const Camera away = makeCamera("away", vec3(0, 9, 0), vec3(0, 10, 0), radians(50));
+  const RenderResult result = renderReference(scene, away, makeSettings(16, 1, 20000, {"caustic"}));
+  ASSERT_EQ(result.ledgers.size(), 1U);
+  const Ledger& ledger = result.ledgers[0];
+  EXPECT_GT(ledger.emitted.x, 1e38);
+  EXPECT_GT(result.stats.not_finite, 0U);
+  const dvec3 lost = ledger.lost[static_cast<std::size_t>(LossReason::kNumerical)];
+  for (int c = 0; c < 3; ++c) {
+    EXPECT_GT(lost[c], 0.01 * ledger.emitted[c]);
+    EXPECT_LT(lost[c], ledger.emitted[c]);
+  }
+  EXPECT_LE(ledger.residual(), 1e-5);
+}
+
+// What is emitted with a flux that is no number cannot be summed: it is counted only.
+TEST(Reference, PhotonsEmittedWithoutFiniteFluxAreCountedAndNotLedgered) {
+  SceneData scene = test::makeBallScene(makeGlass(1.5F));
+  scene.lights.push_back(test::makeSun(vec3(-0.4F, -1, -0.2F), vec3(3e38F)));
+  const RenderResult result = renderReference(scene, lookFromAbove(), makeSettings(16, 1, 1000, {"caustic"}));
+  ASSERT_EQ(result.ledgers.size(), 1U);
+  EXPECT_GT(result.ledgers[0].emitted_count, 0U);
+  EXPECT_EQ(result.stats.not_finite, result.ledgers[0].emitted_count);
+  EXPECT_EQ(result.ledgers[0].emitted, dvec3(0.0));
+  EXPECT_EQ(result.ledgers[0].residual(), 0.0);
+}
+
 TEST(Reference, GeometryLayersSayWhatIsSeen) {
   const SceneData scene = test::makeBallScene(makeGlass(1.5F));
   const Camera down = makeCamera("down", vec3(0, 5, 0), vec3(0, 0, 0), radians(60));
