@@ -1,8 +1,8 @@
 #include "techniques/reference/geometry_layers.h"
 
-#include <tbb/parallel_for.h>
-
 #include <array>
+
+#include "core/parallel.h"
 
 namespace nephroid {
 namespace {
@@ -58,7 +58,8 @@ std::vector<Layer> renderGeometryLayers(const ReferenceWorld& world, const std::
         kinds.push_back(&kind);
       }
   if (layers.empty()) return layers;
-  tbb::parallel_for(0, height, [&](int y) {
+  parallelFor(static_cast<std::size_t>(height), [&](std::size_t row) {
+    const int y = static_cast<int>(row);
     for (int x = 0; x < width; ++x) {
       const Seen seen = look(world, x, y);
       for (std::size_t k = 0; k < layers.size(); ++k) {

@@ -1,9 +1,9 @@
 #include "techniques/reference/photon_batch.h"
 
-#include <tbb/parallel_for.h>
-
 #include <algorithm>
 #include <atomic>
+
+#include "core/parallel.h"
 
 namespace nephroid {
 namespace {
@@ -29,11 +29,11 @@ bool PhotonBatch::trace(std::uint64_t batch, const std::function<bool()>& stoppe
 template <class Work>
 bool PhotonBatch::runChunks(std::size_t first, const std::function<bool()>& stopped, Work&& work) {
   std::atomic<bool> complete{true};
-  tbb::parallel_for(first, chunks_.size(), [&](std::size_t i) {
+  parallelFor(chunks_.size() - first, [&](std::size_t i) {
     if (stopped())
       complete = false;
     else
-      work(chunks_[i]);
+      work(chunks_[first + i]);
   });
   return complete;
 }
@@ -54,7 +54,7 @@ bool PhotonBatch::emit(std::uint64_t batch, const std::function<bool()>& stopped
   }
   if (!runChunks(0, stopped, [&](Chunk& c) { tracer_.emit(c.emitter, c.begin, c.end, waves_[c.emitter], c.tally); }))
     return false;
-  tbb::parallel_for(std::size_t{0}, waves_.size(), [&](std::size_t e) { waves_[e].close(); });
+  parallelFor(waves_.size(), [&](std::size_t e) { waves_[e].close(); });
   return true;
 }
 
@@ -79,7 +79,7 @@ void PhotonBatch::sortByBand(Chunk& chunk) const {
 }
 
 void PhotonBatch::visitSplats(const std::function<void(const Splat&, float scale)>& add) const {
-  tbb::parallel_for(std::size_t{0}, kSplatBands, [&](std::size_t band) {
+  parallelFor(kSplatBands, [&](std::size_t band) {
     for (const Chunk& chunk : chunks_)
       for (std::uint32_t s = chunk.band_begin[band]; s < chunk.band_begin[band + 1]; ++s)
         add(chunk.tally.splats[s], scaleOf(chunk));

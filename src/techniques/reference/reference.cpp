@@ -2,14 +2,15 @@
 
 #include <fmt/format.h>
 #include <tbb/global_control.h>
-#include <tbb/parallel_for.h>
 #include <tbb/task_arena.h>
 
 #include <algorithm>
+#include <atomic>
 #include <chrono>
 #include <cmath>
 #include <memory>
 
+#include "core/parallel.h"
 #include "nephroid/error.h"
 #include "techniques/layers.h"
 #include "techniques/reference/geometry_layers.h"
@@ -144,7 +145,8 @@ class ReferenceRender {
     const auto sample = static_cast<std::uint32_t>(samples_done_);
     std::vector<PathCounters> rows(static_cast<std::size_t>(settings_.height));
     std::atomic<bool> complete{true};
-    tbb::parallel_for(0, settings_.height, [&](int y) {
+    parallelFor(static_cast<std::size_t>(settings_.height), [&](std::size_t row) {
+      const int y = static_cast<int>(row);
       if (stopped() && samples_done_ > 0) {
         complete = false;
         return;
