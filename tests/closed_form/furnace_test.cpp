@@ -18,11 +18,11 @@ void record(const FurnaceResult& r) {
 TEST(WhiteFurnace, HidesAWhiteDiffuseBox) {
   const FurnaceResult r = burn(makeFurnaceScene(makeUnitBox(), makeDiffuse("white", vec3(1.0F))), 64);
   record(r);
-  // Every path scatters once and ends in L; only how directions are weighted is noisy: a pixel of 64 paths by about 1
-  // %.
+  // Every path scatters once and ends in L; only how directions are weighted is noisy, a pixel of 64 paths by 1.2 %:
+  // the bounds are five times that.
   EXPECT_NEAR(r.mean, 1.0, 1e-3);
-  EXPECT_NEAR(r.lowest, 1.0, 0.08);
-  EXPECT_NEAR(r.highest, 1.0, 0.08);
+  EXPECT_NEAR(r.lowest, 1.0, 0.06);
+  EXPECT_NEAR(r.highest, 1.0, 0.06);
 }
 
 TEST(WhiteFurnace, HidesAPerfectMirrorExactly) {
@@ -38,13 +38,14 @@ TEST(WhiteFurnace, HidesAPerfectMirrorExactly) {
 }
 
 TEST(WhiteFurnace, HidesSmoothGlass) {
-  // Each path picks reflection or transmission in proportion and carries L unchanged, n² in and 1/n² out; Russian
-  // roulette on the long ones leaves some noise in the pixels.
+  // Each path picks reflection or transmission in proportion and carries L unchanged, n² in and 1/n² out, without
+  // noise; a few are lost to the bounce limit and at the rim of the ball's facets.
   for (const bool ball : {false, true}) {
     Mesh mesh = ball ? makeSphere("ball", dvec3(0.0), 0.8, 256) : makeUnitBox();
     const FurnaceResult r = burn(makeFurnaceScene(std::move(mesh), makeWhiteGlass(0.0F)), 16);
     record(r);
-    EXPECT_NEAR(r.mean, 1.0, 1e-3) << (ball ? "ball" : "box");
+    EXPECT_NEAR(r.mean, 1.0, 5e-4) << (ball ? "ball" : "box");
+    EXPECT_NEAR(r.highest, 1.0, 1e-5) << (ball ? "ball" : "box");
   }
 }
 

@@ -39,6 +39,7 @@ class EyePath {
     state_.ray = world_.camera_model.rayThrough(film_position);
     vertex_ = state_.ray.origin;
     state_.interior = world_.camera_interior;
+    eye_ior_ = iorOf(state_.interior.medium(), 0.0F);
     // Panes and holes are no events; the limit on steps keeps two facing panes from holding a path for ever.
     for (int step = 0; step < 4 * world_.options.max_bounces; ++step) {
       if (!advance() || !scatter()) return;
@@ -179,8 +180,11 @@ class EyePath {
 
   bool survives() {
     if (class_.count() < kRouletteStart) return true;
-    // A path that has lost nothing is not ended: glass that keeps all its light stays free of this noise.
-    const float q = std::max(maxComponent(glm::abs(throughput_)), maxComponent(glm::abs(irradiance_throughput_)));
+    // A path that has lost nothing is not ended: glass that keeps all its light stays free of this noise. Radiance over
+    // the squared index is what refraction keeps.
+    const float ior = iorOf(state_.interior.medium(), state_.wavelength_nm);
+    const float kept = std::max(maxComponent(glm::abs(throughput_)), maxComponent(glm::abs(irradiance_throughput_)));
+    const float q = kept * ior * ior / (eye_ior_ * eye_ior_);
     if (q >= 1.0F) return true;
     if (q <= 0.0F || sampler_.next1D() >= q) return false;
     throughput_ /= q;
@@ -235,6 +239,7 @@ class EyePath {
   vec3 vertex_{0.0F};                 ///< of the last event, or the eye
   bool previous_is_delta_ = true;
   float previous_pdf_ = 0.0F;
+  float eye_ior_ = 1.0F;  ///< of the medium around the eye
 };
 
 }  // namespace
