@@ -53,7 +53,7 @@ void visitParts(const Triangle& triangle, vec3 eye, float limit, int depth, Visi
 class SunEmitter final : public Emitter {
  public:
   SunEmitter(const TraceScene& scene, const Light& light, const EmissionTargets& targets)
-      : light_(light), frame_(Frame::fromZ(light.direction)), bounds_(scene.bounds()), mask_(kMaskSize, kMaskSize) {
+      : frame_(Frame::fromZ(light.direction)), bounds_(scene.bounds()), mask_(kMaskSize, kMaskSize) {
     sin_half_angle_ = std::sin(0.5F * radians(light.angle_deg));
     const float tan_half_angle = sin_half_angle_ / std::sqrt(std::max(1.0F - sin_half_angle_ * sin_half_angle_, 1e-6F));
     origin_ = targets.bounds().centre();
@@ -157,7 +157,6 @@ class SunEmitter final : public Emitter {
     return std::max(leave, 0.0F) * 1.001F + 1e-4F * bounds_.radius();
   }
 
-  const Light& light_;
   Frame frame_;
   Bounds bounds_;
   MaskedGrid mask_;
