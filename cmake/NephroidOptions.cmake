@@ -16,3 +16,8 @@ if(NEPHROID_SANITIZE)
                                                     -fno-sanitize-recover=all)
   target_link_options(nephroid_options INTERFACE -fsanitize=${NEPHROID_SANITIZE})
 endif()
+if(NEPHROID_BUILD_FUZZ)
+  # The library has to count its branches too, or the fuzzer mutates blindly; only fuzz targets get libFuzzer's main().
+  target_compile_options(nephroid_options INTERFACE -fsanitize=fuzzer-no-link)
+  target_link_options(nephroid_options INTERFACE -fsanitize=fuzzer-no-link)
+endif()

@@ -1,7 +1,0 @@
-// The glTF importer on arbitrary bytes as a .glb file.
-#include "fuzz_file.h"
-#include "scene/import/import.h"
-
-extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
-  return nephroid::fuzzing::runOnFile(data, size, ".glb", [](const auto& path) { nephroid::importGltf(path, 0.5F); });
-}
