@@ -5,10 +5,12 @@
 #include <fmt/format.h>
 
 #include <assimp/BaseImporter.h>
+#include <assimp/MemoryIOWrapper.h>
 #include <algorithm>
 #include <assimp/IOSystem.hpp>
 #include <assimp/Importer.hpp>
 #include <memory>
+#include <span>
 
 #include "core/file.h"
 #include "nephroid/error.h"
@@ -34,14 +36,27 @@ std::string lowerExtension(const std::filesystem::path& path) {
   return extension.empty() ? extension : extension.substr(1);
 }
 
-/// Refuses every file: a mesh is read from memory, and what it names beside itself (OBJ material libraries and their
+/// Serves the bytes of one mesh and nothing else: what it names beside itself (OBJ material libraries and their
 /// textures) is not wanted.
-class NoFiles : public Assimp::IOSystem {
+///
+/// Assimp's own ReadFileFromMemory is of no use here. It serves the mesh under any extension, and where a material
+/// library is missing Assimp's OBJ reader asks for one named as the mesh: it then reads the mesh as materials, and
+/// writes through a null pointer at a value that no "newmtl" precedes.
+class OneFile : public Assimp::IOSystem {
  public:
-  bool Exists(const char*) const override { return false; }
+  /// @param bytes  outlive this
+  OneFile(std::span<const std::byte> bytes, std::string name) : bytes_(bytes), name_(std::move(name)) {}
+  bool Exists(const char* name) const override { return name == name_; }
   char getOsSeparator() const override { return '/'; }
-  Assimp::IOStream* Open(const char*, const char*) override { return nullptr; }
-  void Close(Assimp::IOStream*) override {}
+  Assimp::IOStream* Open(const char* name, const char*) override {
+    if (!Exists(name)) return nullptr;
+    return new Assimp::MemoryIOStream(reinterpret_cast<const std::uint8_t*>(bytes_.data()), bytes_.size());
+  }
+  void Close(Assimp::IOStream* stream) override { delete stream; }
+
+ private:
+  std::span<const std::byte> bytes_;
+  std::string name_;
 };
 
 /// Leaves only the loader of `extension`: Assimp would otherwise try its fifty others on contents that it recognises.
@@ -176,11 +191,13 @@ void checkIndices(const aiScene& scene, const std::filesystem::path& path) {
 }
 
 Mesh importWithAssimp(const std::filesystem::path& path, const std::string& extension) {
-  const std::vector<std::byte> bytes = readFile(path, std::uint64_t{2} << 30);
+  std::vector<std::byte> bytes = readFile(path, std::uint64_t{2} << 30);
   if (bytes.empty()) fail(path, "is empty");
-  if (extension == "ply") checkPly(bytes, path);
+  if (extension == "ply") bytes = checkPly(std::move(bytes), path);
   Assimp::Importer importer;
-  importer.SetIOHandler(new NoFiles);  // the importer owns it
+  // The line break makes it a name that no line of an OBJ file can spell.
+  const std::string name = "mesh\n." + extension;
+  importer.SetIOHandler(new OneFile(bytes, name));  // the importer owns it
   keepOnlyLoader(importer, extension);
   importer.SetPropertyInteger(AI_CONFIG_PP_SBP_REMOVE, aiPrimitiveType_POINT | aiPrimitiveType_LINE);
   const auto check = [&](const aiScene* scene) {
@@ -188,7 +205,7 @@ Mesh importWithAssimp(const std::filesystem::path& path, const std::string& exte
       fail(path, fmt::format("cannot be read as {} ({})", extension, cleanName(importer.GetErrorString())));
     return scene;
   };
-  checkIndices(*check(importer.ReadFileFromMemory(bytes.data(), bytes.size(), 0, extension.c_str())), path);
+  checkIndices(*check(importer.ReadFile(name, 0)), path);
   const aiScene* scene = check(importer.ApplyPostProcessing(aiProcess_ValidateDataStructure | aiProcess_Triangulate |
                                                             aiProcess_SortByPType | aiProcess_JoinIdenticalVertices));
   return merge(collectParts(*scene, path), path);

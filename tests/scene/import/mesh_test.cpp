@@ -90,6 +90,16 @@ TEST(ImportMesh, RefusesOtherFormatsAndEmptyFiles) {
   EXPECT_THROW(importMesh(builder.folder() / "missing.ply"), InputError);
 }
 
+TEST(ImportMesh, NeverReadsAnObjFileAsItsOwnMaterials) {
+  // "a" is no word of OBJ, but one of material libraries; the file names itself in every way there is.
+  GltfBuilder builder;
+  for (const char* library : {"none.mtl", "a.obj", "$$$___magic___$$$.obj", "mesh.obj", "mesh\\\n.obj"}) {
+    const auto path =
+        builder.writeFile("a.obj", "mtllib " + std::string(library) + "\na 1\nv 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n");
+    EXPECT_EQ(importMesh(path).triangles.size(), 1U) << library;
+  }
+}
+
 TEST(ImportMesh, RefusesNonFinitePositions) {
   GltfBuilder builder;
   EXPECT_THROW(importMesh(builder.writeFile("a.obj", "v nan 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n")), InputError);
@@ -106,6 +116,54 @@ TEST(ImportMesh, RefusesPlyIndicesOutOfRange) {
                                                   std::string(index) + "\n")),
                  InputError)
         << index;
+}
+
+/// One triangle in ASCII PLY, with `vertices` before the element "vertex" and `list` among the properties of the face.
+std::string makePly(const std::string& vertices, const std::string& list = "", const std::string& values = "") {
+  return "ply\nformat ascii 1.0\n" + vertices +
+         "element vertex 3\nproperty float x\nproperty float y\nproperty float z\nelement face 1\n"
+         "property list uchar int vertex_indices\n" +
+         list + "end_header\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2" + values + "\n";
+}
+
+TEST(ImportMesh, RefusesPlyElementsThatAreThereTwice) {
+  GltfBuilder builder;
+  EXPECT_EQ(importMesh(builder.writeFile("once.ply", makePly(""))).triangles.size(), 1U);
+  EXPECT_THROW(importMesh(builder.writeFile("a.ply", makePly("element vertex 1\nproperty float x\n"))), InputError);
+  EXPECT_THROW(importMesh(builder.writeFile(
+                   "a.ply", makePly("", "element tristrips 1\nproperty list int int vertex_indices\n", "\n3 0 1 2"))),
+               InputError);
+}
+
+TEST(ImportMesh, RefusesPlyHeadersOfTwoFormatsOrNone) {
+  GltfBuilder builder;
+  EXPECT_THROW(importMesh(builder.writeFile("a.ply", makePly("format binary_little_endian 1.0\n"))), InputError);
+  std::string text = makePly("");
+  text.erase(text.find("format"), 17);
+  EXPECT_THROW(importMesh(builder.writeFile("a.ply", text)), InputError);
+}
+
+TEST(ImportMesh, PlyCommentsAreNoElements) {
+  GltfBuilder builder;
+  for (const char* comment : {"comment vertex 1\n", "comment element vertex 1\n", "obj_info material 4000000000\n"})
+    EXPECT_EQ(importMesh(builder.writeFile("a.ply", makePly(comment))).triangles.size(), 1U) << comment;
+}
+
+TEST(ImportMesh, RefusesControlCharactersInPlyNames) {
+  GltfBuilder builder;
+  std::string text = makePly("");
+  text.replace(text.find("float y"), 7, std::string("float x\0y", 9));
+  EXPECT_THROW(importMesh(builder.writeFile("a.ply", text)), InputError);
+}
+
+/// Assimp would look up the fourth corner of a triangle.
+TEST(ImportMesh, LeavesOutTextureCoordinatesOfPlyFaces) {
+  GltfBuilder builder;
+  const auto path =
+      builder.writeFile("a.ply", makePly("", "property list uchar float texcoord\n", " 8 0 0 1 0 0 1 1 1"));
+  const Mesh mesh = importMesh(path);
+  EXPECT_EQ(mesh.triangles.size(), 1U);
+  EXPECT_TRUE(mesh.texcoords[0].empty());
 }
 
 /// A PLY file cut anywhere is refused, never read past its end.
