@@ -1,7 +1,5 @@
-// Loops over all threads of the current arena.
+// Work on several threads.
 #pragma once
-
-#include <tbb/parallel_for.h>
 
 #include <cstddef>
 
@@ -14,32 +12,85 @@
 #endif
 
 #ifdef NEPHROID_SANITIZE_THREAD
+#include <algorithm>
 #include <atomic>
+#include <exception>
+#include <mutex>
+#include <thread>
+#include <vector>
+#else
+#include <tbb/global_control.h>
+#include <tbb/parallel_for.h>
+#include <tbb/task_arena.h>
 #endif
 
 namespace nephroid {
 
-/// Calls `body(i)` for every i in [0, count), from several threads at once, in no order; returns when all are done.
-/// What was written before is seen by all bodies, what they write is seen afterwards.
-///
-/// An exception of a body ends the loop and is thrown here.
+#ifdef NEPHROID_SANITIZE_THREAD
+
+// The scheduler of TBB is a library that the sanitizer cannot look into: it would report every loop and see nothing of
+// what matters. Threads that it does see run the same bodies instead.
+
+namespace detail {
+/// Of the loops that this thread starts.
+inline thread_local std::size_t thread_count = std::max(std::thread::hardware_concurrency(), 2U);
+}  // namespace detail
+
+inline int availableThreads() { return static_cast<int>(detail::thread_count); }
+
+template <class Work>
+void runWithThreads(int threads, Work&& work) {
+  const std::size_t before = detail::thread_count;
+  detail::thread_count = static_cast<std::size_t>(std::max(threads, 1));
+  work();
+  detail::thread_count = before;
+}
+
 template <class Body>
 void parallelFor(std::size_t count, const Body& body) {
-#ifdef NEPHROID_SANITIZE_THREAD
-  // The scheduler orders bodies after what precedes the loop and before what follows it, but in a library that the
-  // sanitizer cannot look into. These two say so; races between bodies are still seen.
-  std::atomic<bool> begun{false};
-  std::atomic<std::size_t> done{0};
-  begun.store(true, std::memory_order_release);
-  tbb::parallel_for(std::size_t{0}, count, [&](std::size_t i) {
-    static_cast<void>(begun.load(std::memory_order_acquire));
-    body(i);
-    done.fetch_add(1, std::memory_order_release);
-  });
-  static_cast<void>(done.load(std::memory_order_acquire));
-#else
-  tbb::parallel_for(std::size_t{0}, count, body);
-#endif
+  std::atomic<std::size_t> next{0};
+  std::exception_ptr failure;
+  std::mutex failure_guard;
+  const auto run = [&] {
+    for (std::size_t i = next++; i < count; i = next++) {
+      try {
+        body(i);
+      } catch (...) {
+        const std::lock_guard lock(failure_guard);
+        failure = std::current_exception();
+        next = count;
+      }
+    }
+  };
+  std::vector<std::jthread> threads;
+  for (std::size_t t = 1; t < detail::thread_count; ++t) threads.emplace_back(run);
+  run();
+  threads.clear();
+  if (failure) std::rethrow_exception(failure);
 }
+
+#else
+
+/// How many threads a loop may use here.
+inline int availableThreads() { return tbb::this_task_arena::max_concurrency(); }
+
+/// Calls `work()`; its loops use up to `threads` threads, also more than the machine has.
+template <class Work>
+void runWithThreads(int threads, Work&& work) {
+  const int count = threads > 1 ? threads : 1;
+  const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, static_cast<std::size_t>(count));
+  tbb::task_arena arena(count);
+  arena.execute(work);
+}
+
+/// Calls `body(i)` for every i in [0, count), from several threads at once, in no order; returns when all are done.
+/// What was written before is seen by all bodies, what they write is seen afterwards. An exception of a body ends the
+/// loop and is thrown here.
+template <class Body>
+void parallelFor(std::size_t count, const Body& body) {
+  tbb::parallel_for(std::size_t{0}, count, body);
+}
+
+#endif
 
 }  // namespace nephroid

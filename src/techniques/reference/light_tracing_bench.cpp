@@ -1,9 +1,8 @@
 #include "techniques/reference/light_tracing_bench.h"
 
-#include <tbb/task_arena.h>
-
 #include <chrono>
 
+#include "core/parallel.h"
 #include "techniques/reference/photon_batch.h"
 
 namespace nephroid {
@@ -61,7 +60,7 @@ LightTracingMeasurement measureLightTracing(const SceneData& scene, const Camera
   const LightTracer tracer(world, false);
   LightTracingMeasurement m;
   m.triangle_count = scene.triangleCount();
-  m.threads = tbb::this_task_arena::max_concurrency();
+  m.threads = availableThreads();
   if (tracer.emitters().empty()) return m;
   const std::vector<std::uint32_t> shares = tracer.sharePhotons(photons);
   for (const std::uint32_t share : shares) m.photons += share;
@@ -69,16 +68,15 @@ LightTracingMeasurement measureLightTracing(const SceneData& scene, const Camera
   const std::vector<Ray> sorted = recordRays(world, tracer, shares, true);
   m.rays = sorted.size();
   PhotonBatch batch(tracer, photons, std::size_t{kWidth} * kHeight);
-  tbb::task_arena one(1), all(m.threads);
   const auto trace = [&] { batch.trace(0, [] { return false; }); };
   const auto rate = [&](auto&& work) { return static_cast<double>(m.rays) / secondsOf(work); };
   volatile std::uint64_t keep = 0;
-  one.execute(trace);
+  runWithThreads(1, trace);
   for (int i = 0; i < repetitions; ++i) {
-    m.tracer_rays_per_s.push_back(rate([&] { one.execute(trace); }));
+    m.tracer_rays_per_s.push_back(rate([&] { runWithThreads(1, trace); }));
     m.plain_rays_per_s.push_back(rate([&] { keep = tracePlain(world.scene, by_photon); }));
     m.plain_sorted_rays_per_s.push_back(rate([&] { keep = tracePlain(world.scene, sorted); }));
-    m.tracer_rays_per_s_all.push_back(rate([&] { all.execute(trace); }));
+    m.tracer_rays_per_s_all.push_back(rate([&] { runWithThreads(m.threads, trace); }));
     m.ratio.push_back(m.tracer_rays_per_s.back() / m.plain_rays_per_s.back());
     m.ratio_sorted.push_back(m.tracer_rays_per_s.back() / m.plain_sorted_rays_per_s.back());
     m.speedup.push_back(m.tracer_rays_per_s_all.back() / m.tracer_rays_per_s.back());

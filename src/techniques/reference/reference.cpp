@@ -1,8 +1,6 @@
 #include "techniques/reference/reference.h"
 
 #include <fmt/format.h>
-#include <tbb/global_control.h>
-#include <tbb/task_arena.h>
 
 #include <algorithm>
 #include <atomic>
@@ -348,12 +346,9 @@ class ReferenceRender {
 RenderResult renderReference(const SceneData& scene, const Camera& camera, const RenderSettings& settings,
                              ProgressSink* progress, const StopToken* stop) {
   if (settings.width < 1 || settings.height < 1) throw UsageError("a picture has at least 1 × 1 pixels");
-  const int threads = settings.threads > 0 ? settings.threads : tbb::this_task_arena::max_concurrency();
-  const tbb::global_control limit(tbb::global_control::max_allowed_parallelism,
-                                  static_cast<std::size_t>(std::max(threads, 1)));
-  tbb::task_arena arena(threads);
   RenderResult result;
-  arena.execute([&] { result = ReferenceRender(scene, camera, settings, progress, stop).run(); });
+  runWithThreads(settings.threads > 0 ? settings.threads : availableThreads(),
+                 [&] { result = ReferenceRender(scene, camera, settings, progress, stop).run(); });
   return result;
 }
 
