@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <map>
 
+#include "core/parallel.h"
 #include "nephroid/error.h"
 #include "scene/texture.h"
 
@@ -19,6 +20,14 @@ constexpr float kPositionErrorScale = 0x1p-19F;
 /// Rays start a hair off zero: on a plane through the world's origin coordinates are exact, the offset is zero, and
 /// Embree counts a hit at distance zero. No length: any positive number serves.
 constexpr float kRayStart = 1e-30F;
+
+/// Wider vectors lower the clock of some processors by more than they gain.
+#ifdef NEPHROID_SANITIZE_THREAD
+// The sanitizer cannot look into Embree's own threads.
+constexpr const char* kEmbreeConfig = "frequency_level=simd256,threads=1";
+#else
+constexpr const char* kEmbreeConfig = "frequency_level=simd256";
+#endif
 
 /// Fewer rays than this are traced one by one: a packet costs about as much as so many.
 constexpr std::size_t kSmallestPacket = 3;
@@ -131,7 +140,7 @@ RTCGeometry TraceScene::makeTriangles(const Placed& placed) {
 }
 
 void TraceScene::buildEmbree() {
-  device_ = EmbreeDevice(rtcNewDevice("frequency_level=simd256"));
+  device_ = EmbreeDevice(rtcNewDevice(kEmbreeConfig));
   if (!device_.get()) throw InternalError("Embree cannot create a device");
   rtcSetDeviceErrorFunction(device_.get(), onEmbreeError, nullptr);
   top_ = EmbreeScene(rtcNewScene(device_.get()));
