@@ -62,7 +62,7 @@ vec3 capFromSquare(vec2 uv, float one_minus_cos) {
   return {disc.x * stretch, disc.y * stretch, 1.0F - r2 * one_minus_cos};
 }
 
-void markCaps(MaskedGrid& grid, float one_minus_cos, std::vector<DirectionCap> caps) {
+void markCaps(MaskedGrid& grid, float one_minus_cos, const std::vector<DirectionCap>& caps) {
   markBlock(grid, one_minus_cos, 0, 0, grid.width(), caps);
 }
 

@@ -108,6 +108,6 @@ struct DirectionCap {
   vec3 axis;  ///< unit, in the frame of the grid's cap
   float cos_angle, sin_angle;
 };
-void markCaps(MaskedGrid& grid, float one_minus_cos, std::vector<DirectionCap> caps);
+void markCaps(MaskedGrid& grid, float one_minus_cos, const std::vector<DirectionCap>& caps);
 
 }  // namespace nephroid

@@ -181,7 +181,7 @@ TEST(Interrupt, KeepsThePictureAsFarAsItCame) {
   for (const int signal : {SIGINT, SIGTERM}) {
     const TempFolder folder;
     const ProcessResult result =
-        runNephroid({"render", "builtin:ring", "-o", folder.file("a.exr"), "--size", "64x48", "--seconds", "600"},
+        runNephroid({"render", "builtin:slab", "-o", folder.file("a.exr"), "--size", "64x48", "--seconds", "600"},
                     {.while_running = [signal](pid_t process) {
                       interruptAfter(process, std::chrono::milliseconds(4000), signal);
                     }});

@@ -2,6 +2,7 @@
 
 #include <unistd.h>
 
+#include <cerrno>
 #include <csignal>
 #include <string_view>
 
@@ -10,11 +11,14 @@ namespace {
 
 StopToken g_stop;
 
-// Only what POSIX allows in a handler: a lock-free store and write(2).
+// Only what POSIX allows in a handler: a lock-free store and write(2). What it interrupts may be about to read errno.
 extern "C" void onStopSignal(int) {
+  const int interrupted_errno = errno;
   g_stop.request();
   constexpr std::string_view kHint = "\nstopping; once more to kill\n";
-  if (isatty(STDERR_FILENO) == 1 && write(STDERR_FILENO, kHint.data(), kHint.size()) < 0) return;
+  const bool is_told = isatty(STDERR_FILENO) == 1 && write(STDERR_FILENO, kHint.data(), kHint.size()) > 0;
+  static_cast<void>(is_told);
+  errno = interrupted_errno;
 }
 
 }  // namespace
