@@ -180,16 +180,16 @@ void interruptAfter(pid_t process, std::chrono::milliseconds delay, int signal) 
 TEST(Interrupt, KeepsThePictureAsFarAsItCame) {
   for (const int signal : {SIGINT, SIGTERM}) {
     const TempFolder folder;
-    const ProcessResult result =
-        runNephroid({"render", "builtin:slab", "-o", folder.file("a.exr"), "--size", "64x48", "--seconds", "600"},
-                    {.while_running = [signal](pid_t process) {
-                      interruptAfter(process, std::chrono::milliseconds(4000), signal);
-                    }});
+    // One layer that is seen at once, however slow the machine.
+    const ProcessResult result = runNephroid({"render", "builtin:slab", "-o", folder.file("a.exr"), "--size", "64x48",
+                                              "--seconds", "600", "--layers", "direct"},
+                                             {.while_running = [signal](pid_t process) {
+                                               interruptAfter(process, std::chrono::milliseconds(4000), signal);
+                                             }});
     EXPECT_EQ(result.exit_code, 130) << result.err;
     EXPECT_EQ(result.out, "");
     ASSERT_TRUE(std::filesystem::exists(folder.file("a.exr"))) << result.err;
-    const Image* beauty = readExr(folder.file("a.exr")).find("beauty");
-    ASSERT_NE(beauty, nullptr);
+    EXPECT_NE(readExr(folder.file("a.exr")).find("direct"), nullptr);
     // No temporary file is left beside it.
     const std::filesystem::directory_iterator files(folder.path());
     EXPECT_EQ(std::distance(files, std::filesystem::directory_iterator()), 1);
