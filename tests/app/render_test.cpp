@@ -182,7 +182,7 @@ TEST(Interrupt, KeepsThePictureAsFarAsItCame) {
     const TempFolder folder;
     // One layer that is seen at once, however slow the machine.
     const ProcessResult result = runNephroid({"render", "builtin:slab", "-o", folder.file("a.exr"), "--size", "64x48",
-                                              "--seconds", "600", "--layers", "direct"},
+                                              "--seconds", "600", "--aov", "direct"},
                                              {.while_running = [signal](pid_t process) {
                                                interruptAfter(process, std::chrono::milliseconds(4000), signal);
                                              }});
