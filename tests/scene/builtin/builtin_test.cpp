@@ -26,13 +26,13 @@ std::vector<std::string> proceduralNames() {
   return names;
 }
 
-const Instance& findInstance(const SceneData& scene, const std::string& name) {
+const Instance& findInstance(const SceneData& scene, std::string_view name) {
   const auto found = std::ranges::find(scene.instances, name, &Instance::name);
   if (found == scene.instances.end()) throw InternalError("no instance " + name);
   return *found;
 }
 
-const Material& findMaterial(const SceneData& scene, const std::string& name) {
+const Material& findMaterial(const SceneData& scene, std::string_view name) {
   const auto found = std::ranges::find(scene.materials, name, &Material::name);
   if (found == scene.materials.end()) throw InternalError("no material " + name);
   return *found;
