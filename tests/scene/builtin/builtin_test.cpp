@@ -28,13 +28,13 @@ std::vector<std::string> proceduralNames() {
 
 const Instance& findInstance(const SceneData& scene, std::string_view name) {
   const auto found = std::ranges::find(scene.instances, name, &Instance::name);
-  if (found == scene.instances.end()) throw InternalError("no instance " + name);
+  if (found == scene.instances.end()) throw InternalError("no instance " + std::string(name));
   return *found;
 }
 
 const Material& findMaterial(const SceneData& scene, std::string_view name) {
   const auto found = std::ranges::find(scene.materials, name, &Material::name);
-  if (found == scene.materials.end()) throw InternalError("no material " + name);
+  if (found == scene.materials.end()) throw InternalError("no material " + std::string(name));
   return *found;
 }
 
