@@ -9,6 +9,8 @@
 #include <filesystem>
 #include <fstream>
 #include <numbers>
+#include <string>
+#include <string_view>
 
 #include "nephroid/error.h"
 #include "scene/classify.h"
