@@ -71,7 +71,8 @@ Interrupted; a render keeps what it has.
 
 std::string formatManual(const CLI::App& root) {
   std::string text = fmt::format(
-      ".TH NEPHROID 1 \"\" \"nephroid {}\" \"User Commands\"\n.ad l\n.nh\n.SH NAME\nnephroid \\- render caustics\n"
+      ".TH NEPHROID 1 \"\" \"nephroid {}\" \"User Commands\"\n.ds AD l\n.ad l\n.nh\n.SH NAME\nnephroid \\- render "
+      "caustics\n"
       ".SH SYNOPSIS\n.B {}\n.SH DESCRIPTION\n{}\n.SH OPTIONS\n{}.SH COMMANDS\n",
       version(), escapeRoff(formatUsage(root)), escapeRoff(root.get_description()), formatOptions(root));
   for (const CLI::App* command : root.get_subcommands(nullptr)) text += formatCommand(*command);
