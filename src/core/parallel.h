@@ -40,10 +40,14 @@ inline int availableThreads() { return static_cast<int>(detail::thread_count); }
 
 template <class Work>
 void runWithThreads(int threads, Work&& work) {
-  const std::size_t before = detail::thread_count;
+  // Put back however the work ends.
+  struct Restore {
+    std::size_t before = detail::thread_count;
+    ~Restore() { detail::thread_count = before; }
+  };
+  const Restore restore;
   detail::thread_count = static_cast<std::size_t>(std::max(threads, 1));
   work();
-  detail::thread_count = before;
 }
 
 template <class Body>

@@ -30,6 +30,12 @@ TEST(ParallelFor, ThrowsWhatABodyThrows) {
   EXPECT_LE(visits, 100000);
 }
 
+TEST(RunWithThreads, LeavesTheCountAsItWasIfTheWorkThrows) {
+  const int before = availableThreads();
+  EXPECT_THROW(runWithThreads(before + 1, [] { throw std::runtime_error("work"); }), std::runtime_error);
+  EXPECT_EQ(availableThreads(), before);
+}
+
 TEST(RunWithThreads, SaysHowManyThereAre) {
   runWithThreads(3, [] { EXPECT_EQ(availableThreads(), 3); });
   runWithThreads(1, [] { EXPECT_EQ(availableThreads(), 1); });
