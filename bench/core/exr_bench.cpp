@@ -40,7 +40,7 @@ std::int64_t countBytes(const LayeredImage& image) {
 }
 
 void writeLayers(benchmark::State& state) {
-  const ScratchFolder folder;
+  const testing::ScratchFolder folder;
   const LayeredImage image = makeLayers();
   for (auto _ : state) writeExr(folder / "layers.exr", image, state.range(0) != 0);
   state.SetBytesProcessed(state.iterations() * countBytes(image));
@@ -48,7 +48,7 @@ void writeLayers(benchmark::State& state) {
 BENCHMARK(writeLayers)->Name("Exr/write/half")->Arg(0)->Arg(1)->Unit(benchmark::kMillisecond)->UseRealTime();
 
 void readLayers(benchmark::State& state) {
-  const ScratchFolder folder;
+  const testing::ScratchFolder folder;
   const LayeredImage image = makeLayers();
   writeExr(folder / "layers.exr", image, state.range(0) != 0);
   for (auto _ : state) {

@@ -28,7 +28,7 @@ class MeshFile {
 
   std::size_t byteCount() const { return bytes_.size(); }
 
-  std::filesystem::path write(const ScratchFolder& folder) const {
+  std::filesystem::path write(const testing::ScratchFolder& folder) const {
     std::ofstream(folder / "data.bin", std::ios::binary) << bytes_;
     std::ofstream(folder / "scene.gltf", std::ios::binary) << root_.dump();
     return folder / "scene.gltf";
@@ -52,7 +52,7 @@ class MeshFile {
 };
 
 void importMeshFile(benchmark::State& state) {
-  const ScratchFolder folder;
+  const testing::ScratchFolder folder;
   const MeshFile file(makeSphere("ball", dvec3(0), 1.0, static_cast<int>(state.range(0))));
   const std::filesystem::path path = file.write(folder);
   for (auto _ : state) {

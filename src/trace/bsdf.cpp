@@ -18,19 +18,22 @@ constexpr float kMatchedIndex = 1e-5F;
 
 Bsdf::Bsdf(const SurfaceMaterial& material, const SurfacePoint& point, vec3 wo, float ior_from, float ior_to,
            float specular_alpha)
-    : material_(material), normal_geometric_(point.normal_geometric), ior_from_(ior_from) {
+    : material_(material), wo_(wo), normal_geometric_(point.normal_geometric), ior_from_(ior_from) {
   side_is_outward_ = dot(wo, point.normal_geometric) > 0.0F;
   const vec3 normal = side_is_outward_ ? point.normal_shading : -point.normal_shading;
   // Near a silhouette the interpolated normal may look away from the path: the true one cannot.
   const bool usable = dot(normal, wo) > 1e-4F;
-  frame_ = Frame::fromZ(usable ? normal : (side_is_outward_ ? point.normal_geometric : -point.normal_geometric));
-  wo_local_ = frame_.toLocal(wo);
+  normal_ = usable ? normal : (side_is_outward_ ? point.normal_geometric : -point.normal_geometric);
   ior_to_ = material.is_solid ? ior_to : material.source->ior;
   smooth_ = material.alpha == 0.0F;
+  if (!smooth_) {
+    frame_ = Frame::fromZ(normal_);
+    wo_local_ = frame_.toLocal(wo);
+  }
   interface_is_specular_ = material.alpha < specular_alpha;
   index_matched_ = material.is_solid && std::abs(ior_from_ - ior_to_) < kMatchedIndex * ior_from_;
 
-  const float cos_o = std::max(wo_local_.z, 0.0F);
+  const float cos_o = std::max(dot(wo, normal_), 0.0F);
   const float fresnel_o = fresnelAt(cos_o);
   reflectance_ = reflectanceAt(cos_o, fresnel_o);
   transmittance_ = transmittanceFor(fresnel_o);
@@ -94,23 +97,22 @@ float Bsdf::radianceScale(Transport transport) const {
 
 float Bsdf::shadingCosineRatio(vec3 w) const {
   const float geometric = std::abs(dot(w, normal_geometric_));
-  return geometric > 0.0F ? std::abs(dot(w, frame_.z)) / geometric : 0.0F;
+  return geometric > 0.0F ? std::abs(dot(w, normal_)) / geometric : 0.0F;
 }
 
 BsdfValue Bsdf::evaluate(EventClass c, vec3 wi, Transport transport) const {
   BsdfValue value;
-  const vec3 wi_local = frame_.toLocal(wi);
+  const float cos_i = dot(wi, normal_);
   const bool reflected = sameSide(wi);
   // Light must be on the same side of the true and the shaded surface, else it leaks through.
-  if (reflected != (wi_local.z > 0.0F) || wi_local.z == 0.0F) return value;
+  if (reflected != (cos_i > 0.0F) || cos_i == 0.0F) return value;
   const bool interface_counts = (c == EventClass::kSpecular) == interface_is_specular_ && !smooth_;
   const float p_interface = c == EventClass::kSpecular ? 1.0F : interface_is_specular_ ? 0.0F : interface_probability_;
   if (interface_counts && interface_probability_ > 0.0F) {
-    value = evaluateInterface(wi_local, reflected, transport);
+    value = evaluateInterface(frame_.toLocal(wi), reflected, transport);
     value.pdf *= p_interface;
   }
   if (c == EventClass::kDiffuse && reflected) {
-    const float cos_i = wi_local.z;
     value.f += base_scale_ * baseFactorFor(fresnelAt(cos_i)) * base_factor_o_ * (1.0F / kPi);
     value.pdf += (1.0F - p_interface) * cos_i * (1.0F / kPi);
   }
@@ -174,14 +176,14 @@ std::optional<BsdfSample> Bsdf::sample(EventClass c, vec2 u, float u_lobe, Trans
   const BsdfValue both = evaluate(c, s->dir, transport);
   if (both.pdf <= 0.0F) return std::nullopt;
   s->pdf = both.pdf;
-  s->weight = both.f * (std::abs(dot(s->dir, frame_.z)) / both.pdf);
+  s->weight = both.f * (std::abs(dot(s->dir, normal_)) / both.pdf);
   return s;
 }
 
 std::optional<BsdfSample> Bsdf::sampleBase(vec2 u) const {
   const vec3 local = sampleCosineHemisphere(u);
   BsdfSample s;
-  s.dir = frame_.toWorld(local);
+  s.dir = Frame::fromZ(normal_).toWorld(local);
   if (local.z <= 0.0F || !sameSide(s.dir)) return std::nullopt;
   s.pdf = local.z * (1.0F / kPi);
   s.weight = base_scale_ * baseFactorFor(fresnelAt(local.z)) * base_factor_o_;
@@ -195,7 +197,7 @@ std::optional<BsdfSample> Bsdf::sampleSmooth(float u_lobe, Transport transport) 
   BsdfSample s;
   s.delta = true;
   if (u_lobe < p_reflect) {
-    s.dir = frame_.toWorld(vec3(-wo_local_.x, -wo_local_.y, wo_local_.z));
+    s.dir = reflectDir(-wo_, normal_);
     s.weight = reflectance_ / p_reflect;
     if (!sameSide(s.dir)) return std::nullopt;
     return s;
@@ -203,13 +205,13 @@ std::optional<BsdfSample> Bsdf::sampleSmooth(float u_lobe, Transport transport) 
   s.transmitted = true;
   s.weight = transmittance_ / (1.0F - p_reflect);
   if (material_.is_pane || index_matched_) {
-    s.dir = -frame_.toWorld(wo_local_);
+    s.dir = -wo_;
     s.pass = material_.is_pane;
     return s;
   }
-  const Refraction refraction = refractDir(-wo_local_, vec3(0, 0, 1), ior_from_ / ior_to_);
+  const Refraction refraction = refractDir(-wo_, normal_, ior_from_ / ior_to_);
   if (!refraction.valid) return std::nullopt;
-  s.dir = frame_.toWorld(refraction.dir);
+  s.dir = refraction.dir;
   if (sameSide(s.dir)) return std::nullopt;
   s.weight *= radianceScale(transport);
   return s;

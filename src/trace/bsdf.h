@@ -68,7 +68,7 @@ class Bsdf {
   /// |cos| between a direction and the shading normal over the one with the geometric normal: what turns flux incident
   /// on the true surface into flux incident on the shaded one (Veach 1997, §5.3.2).
   float shadingCosineRatio(vec3 w) const;
-  vec3 normal() const { return frame_.z; }
+  vec3 normal() const { return normal_; }
 
  private:
   /// Reflectance of one face for all that follow; 0 where none of them asks.
@@ -84,9 +84,12 @@ class Bsdf {
   float radianceScale(Transport transport) const;
 
   const SurfaceMaterial& material_;
-  Frame frame_;  ///< z = shading normal on wo's side
+  vec3 wo_;      ///< world
+  vec3 normal_;  ///< shading normal on wo's side
   vec3 normal_geometric_;
   bool side_is_outward_;
+  // Of rough interfaces only: mirrors and clear glass need no tangents.
+  Frame frame_;  ///< z = normal_
   vec3 wo_local_;
   float ior_from_, ior_to_;
   bool smooth_, interface_is_specular_, index_matched_;

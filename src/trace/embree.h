@@ -40,17 +40,37 @@ using EmbreeDevice = EmbreeHandle<RTCDevice, rtcReleaseDevice>;
 using EmbreeScene = EmbreeHandle<RTCScene, rtcReleaseScene>;
 using EmbreeGeometry = EmbreeHandle<RTCGeometry, rtcReleaseGeometry>;
 
-/// Nearest hit of `ray_hit.ray`; `ray_hit.hit.geomID` is RTC_INVALID_GEOMETRY_ID if there is none.
-inline void intersectClosest(RTCScene scene, RTCRayHit& ray_hit, bool coherent = false) {
+/// What Embree 3 calls a context and Embree 4 the arguments of a query.
+/// @param coherent  rays stay together nearly to the end: visits each node once for all of a packet
 #if NEPHROID_EMBREE_MAJOR >= 4
+inline RTCIntersectArguments makeIntersectQuery(bool coherent) {
   RTCIntersectArguments arguments;
   rtcInitIntersectArguments(&arguments);
   arguments.flags = coherent ? RTC_RAY_QUERY_FLAG_COHERENT : RTC_RAY_QUERY_FLAG_INCOHERENT;
-  rtcIntersect1(scene, &ray_hit, &arguments);
+  return arguments;
+}
+inline RTCOccludedArguments makeOccludedQuery(bool coherent) {
+  RTCOccludedArguments arguments;
+  rtcInitOccludedArguments(&arguments);
+  arguments.flags = coherent ? RTC_RAY_QUERY_FLAG_COHERENT : RTC_RAY_QUERY_FLAG_INCOHERENT;
+  return arguments;
+}
 #else
+inline RTCIntersectContext makeQuery(bool coherent) {
   RTCIntersectContext context;
   rtcInitIntersectContext(&context);
   context.flags = coherent ? RTC_INTERSECT_CONTEXT_FLAG_COHERENT : RTC_INTERSECT_CONTEXT_FLAG_INCOHERENT;
+  return context;
+}
+#endif
+
+/// Nearest hit of `ray_hit.ray`; `ray_hit.hit.geomID` is RTC_INVALID_GEOMETRY_ID if there is none.
+inline void intersectClosest(RTCScene scene, RTCRayHit& ray_hit, bool coherent = false) {
+#if NEPHROID_EMBREE_MAJOR >= 4
+  RTCIntersectArguments arguments = makeIntersectQuery(coherent);
+  rtcIntersect1(scene, &ray_hit, &arguments);
+#else
+  RTCIntersectContext context = makeQuery(coherent);
   rtcIntersect1(scene, &context, &ray_hit);
 #endif
 }
@@ -58,28 +78,23 @@ inline void intersectClosest(RTCScene scene, RTCRayHit& ray_hit, bool coherent =
 /// True if anything lies on the ray; `ray.tfar` is −infinity afterwards if so.
 inline bool intersectAny(RTCScene scene, RTCRay& ray) {
 #if NEPHROID_EMBREE_MAJOR >= 4
-  rtcOccluded1(scene, &ray);
+  RTCOccludedArguments arguments = makeOccludedQuery(false);
+  rtcOccluded1(scene, &ray, &arguments);
 #else
-  RTCIntersectContext context;
-  rtcInitIntersectContext(&context);
+  RTCIntersectContext context = makeQuery(false);
   rtcOccluded1(scene, &context, &ray);
 #endif
   return ray.tfar < 0.0F;
 }
 
 /// Eight rays at once, those whose `valid` is −1; they run alike, or packets gain nothing.
-/// @param valid     [8], aligned to 32 bytes
-/// @param coherent  they stay together nearly to the end: visits each node once for all of them
+/// @param valid  [8], aligned to 32 bytes
 inline void intersectClosest8(const int* valid, RTCScene scene, RTCRayHit8& ray_hits, bool coherent) {
 #if NEPHROID_EMBREE_MAJOR >= 4
-  RTCIntersectArguments arguments;
-  rtcInitIntersectArguments(&arguments);
-  arguments.flags = coherent ? RTC_RAY_QUERY_FLAG_COHERENT : RTC_RAY_QUERY_FLAG_INCOHERENT;
+  RTCIntersectArguments arguments = makeIntersectQuery(coherent);
   rtcIntersect8(valid, scene, &ray_hits, &arguments);
 #else
-  RTCIntersectContext context;
-  rtcInitIntersectContext(&context);
-  context.flags = coherent ? RTC_INTERSECT_CONTEXT_FLAG_COHERENT : RTC_INTERSECT_CONTEXT_FLAG_INCOHERENT;
+  RTCIntersectContext context = makeQuery(coherent);
   rtcIntersect8(valid, scene, &context, &ray_hits);
 #endif
 }
@@ -87,14 +102,10 @@ inline void intersectClosest8(const int* valid, RTCScene scene, RTCRayHit8& ray_
 /// The same for intersectAny: `rays.tfar` is −infinity where something lies on the ray.
 inline void intersectAny8(const int* valid, RTCScene scene, RTCRay8& rays, bool coherent) {
 #if NEPHROID_EMBREE_MAJOR >= 4
-  RTCOccludedArguments arguments;
-  rtcInitOccludedArguments(&arguments);
-  arguments.flags = coherent ? RTC_RAY_QUERY_FLAG_COHERENT : RTC_RAY_QUERY_FLAG_INCOHERENT;
+  RTCOccludedArguments arguments = makeOccludedQuery(coherent);
   rtcOccluded8(valid, scene, &rays, &arguments);
 #else
-  RTCIntersectContext context;
-  rtcInitIntersectContext(&context);
-  context.flags = coherent ? RTC_INTERSECT_CONTEXT_FLAG_COHERENT : RTC_INTERSECT_CONTEXT_FLAG_INCOHERENT;
+  RTCIntersectContext context = makeQuery(coherent);
   rtcOccluded8(valid, scene, &context, &rays);
 #endif
 }

@@ -57,10 +57,19 @@ void checkEmbree(RTCDevice device, const char* what) {
   throw InternalError(fmt::format("Embree error {} while {}", static_cast<int>(code), what));
 }
 
+vec3 unitOrZero(vec3 v) {
+  const float squared = dot(v, v);
+  return squared > 0.0F ? v * (1.0F / std::sqrt(squared)) : vec3(0.0F);
+}
+
+/// Only the error across the surface matters: along it, the point is still on the surface.
+/// @param magnitude  of the numbers that the position was computed from
+float boundPositionError(vec3 normal, vec3 magnitude) { return kPositionErrorScale * dot(glm::abs(normal), magnitude); }
+
 /// The triangles of a mesh, placed by `placed` (the identity for meshes that are instanced).
-std::vector<PackedTriangle> packTriangles(const Mesh& mesh, const mat4& placed) {
+HugePageVector<PackedTriangle> packTriangles(const Mesh& mesh, const mat4& placed) {
   const mat3 normal_from_object = glm::transpose(glm::inverse(mat3(placed)));
-  std::vector<PackedTriangle> packed(mesh.triangles.size());
+  HugePageVector<PackedTriangle> packed(mesh.triangles.size());
   for (std::size_t t = 0; t < packed.size(); ++t) {
     for (int k = 0; k < 3; ++k) {
       const std::uint32_t vertex = mesh.triangles[t][k];
@@ -68,6 +77,11 @@ std::vector<PackedTriangle> packTriangles(const Mesh& mesh, const mat4& placed) 
       packed[t].normals[k] =
           mesh.normals.empty() ? 0 : PackedTriangle::packNormal(normalize(normal_from_object * mesh.normals[vertex]));
     }
+    const vec3* c = packed[t].corners;
+    const vec3 normal = unitOrZero(cross(c[1] - c[0], c[2] - c[0]));
+    const vec3 magnitude = glm::max(glm::max(glm::abs(c[0]), glm::abs(c[1])), glm::abs(c[2]));
+    // Without area a triangle has no normal: `surfaceAt` takes any.
+    packed[t].position_error = boundPositionError(normal != vec3(0.0F) ? normal : vec3(1.0F), magnitude);
   }
   return packed;
 }
@@ -258,30 +272,30 @@ bool TraceScene::occluded(const Ray& ray) const {
   return intersectAny(top_.get(), query);
 }
 
-SurfacePoint TraceScene::surfaceAt(const Ray& ray, const RayHit& hit) const {
+void TraceScene::describeSurface(const Ray& ray, const RayHit& hit, SurfacePoint& point) const {
   const Placed& placed = placed_[hit.instance];
   const PackedTriangle& packed = placed.packed[hit.triangle];
   const vec3 a = packed.corners[0], b = packed.corners[1], c = packed.corners[2];
-  SurfacePoint point;
   point.instance = hit.instance, point.triangle = hit.triangle, point.u = hit.u, point.v = hit.v;
   vec3 normal = cross(b - a, c - a);
   point.position = a + hit.u * (b - a) + hit.v * (c - a);
-  vec3 magnitude = glm::max(glm::max(glm::abs(a), glm::abs(b)), glm::abs(c));
   if (!placed.baked) {
     point.position = transformPoint(placed.world_from_object, point.position);
     normal = placed.normal_from_object * normal;
-    const mat4& m = placed.world_from_object;
-    const mat3 absolute(glm::abs(vec3(m[0])), glm::abs(vec3(m[1])), glm::abs(vec3(m[2])));
-    magnitude = absolute * magnitude + glm::abs(vec3(m[3]));
   }
-  const float normal_length = length(normal);
+  normal = unitOrZero(normal);
   // A triangle without area has no normal; any that faces the ray keeps the arithmetic finite.
-  point.normal_geometric = normal_length > 0.0F ? normal / normal_length : -ray.dir;
+  point.normal_geometric = normal != vec3(0.0F) ? normal : -ray.dir;
   // The inverse transpose of a mirrored transform already turns object normals outward; world-space winding is
   // reversed.
   if (placed.mirrored && placed.baked) point.normal_geometric = -point.normal_geometric;
-  // Only the error across the surface matters: along it, the point is still on the surface.
-  point.position_error = kPositionErrorScale * dot(glm::abs(point.normal_geometric), magnitude);
+  point.position_error = packed.position_error;
+  if (!placed.baked) {
+    const mat4& m = placed.world_from_object;
+    const mat3 absolute(glm::abs(vec3(m[0])), glm::abs(vec3(m[1])), glm::abs(vec3(m[2])));
+    const vec3 magnitude = absolute * glm::max(glm::max(glm::abs(a), glm::abs(b)), glm::abs(c)) + glm::abs(vec3(m[3]));
+    point.position_error = boundPositionError(point.normal_geometric, magnitude);
+  }
   point.normal_shading = point.normal_geometric;
   if (placed.smooth) {
     vec3 interpolated = (1.0F - hit.u - hit.v) * PackedTriangle::unpackNormal(packed.normals[0]) +
@@ -294,7 +308,6 @@ SurfacePoint TraceScene::surfaceAt(const Ray& ray, const RayHit& hit) const {
   }
   if (placed.material->normal_texture.valid())
     point.normal_shading = perturbNormal(placed, point, point.normal_shading);
-  return point;
 }
 
 vec3 TraceScene::perturbNormal(const Placed& placed, const SurfacePoint& point, vec3 normal) const {

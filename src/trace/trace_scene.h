@@ -9,6 +9,7 @@
 #include <span>
 #include <vector>
 
+#include "core/huge_pages.h"
 #include "core/math.h"
 #include "scene/scene_data.h"
 #include "trace/embree.h"
@@ -24,8 +25,9 @@ struct Ray {
 /// What a hit needs of one triangle, in one cache line: photons land everywhere, and fetching corners through indices
 /// would cost seven lines.
 struct alignas(64) PackedTriangle {
-  vec3 corners[3];
   std::uint64_t normals[3];  ///< by packNormal; all 0 where the mesh has none
+  vec3 corners[3];
+  float position_error;  ///< SurfacePoint::position_error in the space of the corners
 
   /// A unit vector in 3 × 21 bits, error below 1e-6; never 0.
   static std::uint64_t packNormal(vec3 n);
@@ -79,7 +81,13 @@ class TraceScene {
   /// @return  bit i: is there any triangle on ray i? @param rays  1 to kPacketSize of them
   std::uint32_t occludedPacket(std::span<const Ray> rays) const;
 
-  SurfacePoint surfaceAt(const Ray& ray, const RayHit& hit) const;
+  SurfacePoint surfaceAt(const Ray& ray, const RayHit& hit) const {
+    SurfacePoint point;
+    describeSurface(ray, hit, point);
+    return point;
+  }
+  /// The same, written to where it is wanted.
+  void describeSurface(const Ray& ray, const RayHit& hit, SurfacePoint& point) const;
   /// Texture coordinates of set 0 or 1; zero where the mesh has none.
   vec2 texcoordAt(std::uint32_t instance, std::uint32_t triangle, float u, float v, int set) const;
   vec4 colorAt(std::uint32_t instance, std::uint32_t triangle, float u, float v) const;
@@ -123,7 +131,7 @@ class TraceScene {
 
   const SceneData& scene_;
   std::vector<Placed> placed_;
-  std::vector<std::vector<PackedTriangle>> packed_;  ///< by mesh index
+  std::vector<HugePageVector<PackedTriangle>> packed_;  ///< by mesh index
   Bounds bounds_;
   EmbreeDevice device_;
   std::vector<EmbreeScene> mesh_scenes_;  ///< by mesh index, for instanced meshes

@@ -31,7 +31,7 @@ bool Walker::arrive(PathState& state, Sampler& sampler, Encounter& e, const RayH
     e.distance = kInfinity;
     return true;
   }
-  e.point = scene_.surfaceAt(state.ray, hit);
+  scene_.describeSurface(state.ray, hit, e.point);
   e.distance += hit.t;
   e.material = &materials_.at(e.point, e.scratch);
   const Material& material = *e.material->source;

@@ -108,11 +108,14 @@ std::string formatQuantity(double value, const std::string& unit) {
 }
 
 std::string formatResult(const BenchResult& result) {
+  std::size_t width = 0;
+  for (const Measurement& m : result.measurements) width = std::max(width, m.name.size());
   std::string text = fmt::format("{} {}\n", result.scene, result.technique);
-  for (const Measurement& measurement : result.measurements)
-    text += fmt::format("  {:<24} {:>16}  +- {:.1f} %\n", measurement.name,
-                        formatQuantity(computeMedian(measurement.values), measurement.unit),
-                        100 * computeSpread(measurement.values));
+  for (const Measurement& m : result.measurements) {
+    text += fmt::format("  {:<{}} {:>16}", m.name, width, formatQuantity(computeMedian(m.values), m.unit));
+    if (m.values.size() > 1) text += fmt::format("  +- {:.1f} %", 100 * computeSpread(m.values));
+    text += '\n';
+  }
   return text;
 }
 

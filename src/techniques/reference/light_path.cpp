@@ -104,8 +104,10 @@ bool LightPath::scatter() {
     lose(LossReason::kNumerical, flux_);
     return false;
   }
-  if (accounted()) roulette_ += dvec3(flux_) - dvec3(weighted);
-  flux_ = weighted;
+  if (weight != vec3(1.0F)) {
+    if (accounted()) roulette_ += dvec3(flux_) - dvec3(weighted);
+    flux_ = weighted;
+  }
   if (!bsdf.hasDiffuse()) {
     if (accounted()) ledger_->absorbed += dvec3(rest);
   } else if (stage_ == Stage::kEmitted) {
@@ -133,6 +135,7 @@ bool LightPath::continueWith(const Bsdf& bsdf, vec3 specular_share, vec3 wo) {
     if (!diffuse_allowed || p_class <= 0.0F) return false;
     return scatterDiffuse(bsdf, p_class, wo);
   }
+  if (p_class == 1.0F) return scatterSpecular(bsdf, specular_flux, p_class);
   const vec3 carried = specular_flux / p_class;
   if (!isFinite(carried)) {
     lose(LossReason::kNumerical, specular_flux);
@@ -150,7 +153,7 @@ bool LightPath::scatterSpecular(const Bsdf& bsdf, vec3 carried, float p_class) {
     lose(smooth ? LossReason::kShadingNormal : LossReason::kMicrofacet, carried);
     return false;
   }
-  const vec3 out = flux_ * s->weight / p_class;
+  const vec3 out = flux_ * (s->weight / p_class);
   if (!isFinite(out)) {
     lose(LossReason::kNumerical, carried);
     return false;

@@ -8,6 +8,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "core/huge_pages.h"
 #include "core/sampling/sampler.h"
 #include "techniques/reference/photon_order.h"
 #include "trace/emission.h"
@@ -43,7 +44,7 @@ class PhotonWave {
 
  private:
   std::uint64_t first_ = 0;
-  std::vector<Photon> photons_;
+  HugePageVector<Photon> photons_;
   std::vector<std::uint32_t> keys_;   ///< by photon
   std::vector<std::uint32_t> order_;  ///< into photons_
 };

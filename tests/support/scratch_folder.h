@@ -1,4 +1,4 @@
-// Where benchmarks of files keep them.
+// Where benchmarks and fuzzers of files keep them.
 #pragma once
 
 #include <unistd.h>
@@ -6,12 +6,12 @@
 #include <string>
 #include <system_error>
 
-namespace nephroid::bench {
+namespace nephroid::testing {
 
-/// A folder for temporary files, gone at the end of its scope.
+/// A folder of this process for temporary files, gone at the end of its scope.
 class ScratchFolder {
  public:
-  ScratchFolder() : path_(std::filesystem::temp_directory_path() / ("nephroid_bench_" + std::to_string(::getpid()))) {
+  ScratchFolder() : path_(std::filesystem::temp_directory_path() / ("nephroid_" + std::to_string(::getpid()))) {
     std::filesystem::create_directories(path_);
   }
   ~ScratchFolder() {
@@ -27,4 +27,4 @@ class ScratchFolder {
   std::filesystem::path path_;
 };
 
-}  // namespace nephroid::bench
+}  // namespace nephroid::testing
