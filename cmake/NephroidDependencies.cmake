@@ -19,12 +19,16 @@ find_package(fmt REQUIRED)
 find_package(PkgConfig REQUIRED)
 pkg_check_modules(WebP REQUIRED IMPORTED_TARGET GLOBAL libwebp)
 find_path(STB_INCLUDE_DIR stb_image.h PATH_SUFFIXES stb REQUIRED)
+if(NEPHROID_VULKAN)
+  # Headers only: the loader is opened at run time.
+  find_path(VULKAN_INCLUDE_DIR vulkan/vulkan.h REQUIRED)
+endif()
 
 add_library(nephroid_dependencies INTERFACE)
 target_link_libraries(
   nephroid_dependencies
   INTERFACE embree TBB::tbb glm::glm OpenEXR::OpenEXR ZLIB::ZLIB PNG::PNG JPEG::JPEG assimp::assimp draco::draco
-            meshoptimizer::meshoptimizer nlohmann_json::nlohmann_json fmt::fmt PkgConfig::WebP)
+            meshoptimizer::meshoptimizer nlohmann_json::nlohmann_json fmt::fmt PkgConfig::WebP ${CMAKE_DL_LIBS})
 # As system headers: their warnings are not ours. Only for building: an installed library needs its dependencies to link.
 target_include_directories(nephroid_dependencies SYSTEM INTERFACE $<BUILD_INTERFACE:${STB_INCLUDE_DIR}>)
 target_compile_definitions(nephroid_dependencies

@@ -1,0 +1,188 @@
+#include "gpu/resources.h"
+
+#include <fmt/format.h>
+
+#include <memory>
+#include <utility>
+
+#include "nephroid/error.h"
+
+namespace nephroid::gpu {
+namespace {
+
+bool isDepth(VkFormat format) { return format == VK_FORMAT_D32_SFLOAT || format == VK_FORMAT_D16_UNORM; }
+
+/// For a handle of any kind; on 64-bit systems they are pointers.
+template <class Handle>
+std::uint64_t bitsOf(Handle handle) {
+  return reinterpret_cast<std::uint64_t>(handle);
+}
+
+/// std::function wants copyable captures.
+std::shared_ptr<Allocation> share(Allocation&& allocation) {
+  return std::make_shared<Allocation>(std::move(allocation));
+}
+
+}  // namespace
+
+std::uint32_t texelBytes(VkFormat format) {
+  switch (format) {
+    case VK_FORMAT_R8_UNORM:
+      return 1;
+    case VK_FORMAT_R8G8_UNORM:
+    case VK_FORMAT_R16_SFLOAT:
+      return 2;
+    case VK_FORMAT_R8G8B8A8_UNORM:
+    case VK_FORMAT_R8G8B8A8_SRGB:
+    case VK_FORMAT_R32_SFLOAT:
+    case VK_FORMAT_R32_UINT:
+    case VK_FORMAT_D32_SFLOAT:
+      return 4;
+    case VK_FORMAT_R16G16B16A16_UNORM:
+    case VK_FORMAT_R16G16B16A16_SFLOAT:
+    case VK_FORMAT_R32G32_SFLOAT:
+    case VK_FORMAT_R32G32_UINT:
+      return 8;
+    case VK_FORMAT_R32G32B32A32_SFLOAT:
+    case VK_FORMAT_R32G32B32A32_UINT:
+      return 16;
+    default:
+      throw InternalError(
+          fmt::format("the size of a texel of Vulkan format {} is not listed", static_cast<int>(format)));
+  }
+}
+
+Buffer::Buffer(Device& device, VkDeviceSize size, VkBufferUsageFlags usage, MemoryIntent intent, std::string_view name)
+    : device_(&device), size_(size) {
+  const VkBufferCreateInfo info{.sType = VK_STRUCTURE_TYPE_BUFFER_CREATE_INFO,
+                                .size = size,
+                                .usage = usage | VK_BUFFER_USAGE_TRANSFER_SRC_BIT | VK_BUFFER_USAGE_TRANSFER_DST_BIT,
+                                .sharingMode = VK_SHARING_MODE_EXCLUSIVE};
+  const DeviceApi& api = device.api();
+  check(api.CreateBuffer(device.handle(), &info, nullptr, &handle_), fmt::format("creating the buffer '{}'", name));
+  try {
+    VkMemoryRequirements requirements;
+    api.GetBufferMemoryRequirements(device.handle(), handle_, &requirements);
+    allocation_ = device.memory().allocate(requirements, intent, true, name);
+    check(api.BindBufferMemory(device.handle(), handle_, allocation_.memory(), allocation_.offset()),
+          fmt::format("binding the buffer '{}'", name));
+    device.setName(VK_OBJECT_TYPE_BUFFER, bitsOf(handle_), name);
+  } catch (...) {
+    api.DestroyBuffer(device.handle(), handle_, nullptr);
+    throw;
+  }
+}
+
+Buffer::~Buffer() {
+  if (!handle_) return;
+  device_->retire([device = device_, handle = handle_, memory = share(std::move(allocation_))] {
+    device->api().DestroyBuffer(device->handle(), handle, nullptr);
+  });
+}
+
+void Buffer::swap(Buffer& other) noexcept {
+  std::swap(device_, other.device_);
+  std::swap(handle_, other.handle_);
+  std::swap(size_, other.size_);
+  std::swap(allocation_, other.allocation_);
+  std::swap(state_, other.state_);
+}
+
+Image::Image(Device& device, const ImageDesc& desc, std::string_view name)
+    : device_(&device),
+      aspect_(isDepth(desc.format) ? VK_IMAGE_ASPECT_DEPTH_BIT : VK_IMAGE_ASPECT_COLOR_BIT),
+      desc_(desc) {
+  const VkImageCreateInfo info{
+      .sType = VK_STRUCTURE_TYPE_IMAGE_CREATE_INFO,
+      .flags = static_cast<VkImageCreateFlags>(desc.is_cube ? VK_IMAGE_CREATE_CUBE_COMPATIBLE_BIT : 0),
+      .imageType = VK_IMAGE_TYPE_2D,
+      .format = desc.format,
+      .extent = {desc.width, desc.height, 1},
+      .mipLevels = desc.mips,
+      .arrayLayers = desc.layers,
+      .samples = VK_SAMPLE_COUNT_1_BIT,
+      .tiling = VK_IMAGE_TILING_OPTIMAL,
+      .usage = desc.usage | VK_IMAGE_USAGE_TRANSFER_SRC_BIT | VK_IMAGE_USAGE_TRANSFER_DST_BIT,
+      .sharingMode = VK_SHARING_MODE_EXCLUSIVE,
+      .initialLayout = VK_IMAGE_LAYOUT_UNDEFINED};
+  const DeviceApi& api = device.api();
+  check(api.CreateImage(device.handle(), &info, nullptr, &handle_), fmt::format("creating the image '{}'", name));
+  try {
+    VkMemoryRequirements requirements;
+    api.GetImageMemoryRequirements(device.handle(), handle_, &requirements);
+    allocation_ = device.memory().allocate(requirements, MemoryIntent::kDevice, false, name);
+    check(api.BindImageMemory(device.handle(), handle_, allocation_.memory(), allocation_.offset()),
+          fmt::format("binding the image '{}'", name));
+    const bool array = desc.is_array || desc.layers > 1;
+    view_ = makeView(desc.is_cube ? VK_IMAGE_VIEW_TYPE_CUBE
+                     : array      ? VK_IMAGE_VIEW_TYPE_2D_ARRAY
+                                  : VK_IMAGE_VIEW_TYPE_2D,
+                     desc.mips);
+    target_view_ = makeView(array ? VK_IMAGE_VIEW_TYPE_2D_ARRAY : VK_IMAGE_VIEW_TYPE_2D, 1);
+    device.setName(VK_OBJECT_TYPE_IMAGE, bitsOf(handle_), name);
+  } catch (...) {
+    if (view_) api.DestroyImageView(device.handle(), view_, nullptr);
+    if (target_view_) api.DestroyImageView(device.handle(), target_view_, nullptr);
+    api.DestroyImage(device.handle(), handle_, nullptr);
+    throw;
+  }
+}
+
+VkImageView Image::makeView(VkImageViewType type, std::uint32_t mips) const {
+  const VkImageViewCreateInfo info{.sType = VK_STRUCTURE_TYPE_IMAGE_VIEW_CREATE_INFO,
+                                   .image = handle_,
+                                   .viewType = type,
+                                   .format = desc_.format,
+                                   .subresourceRange = {aspect_, 0, mips, 0, desc_.layers}};
+  VkImageView view = VK_NULL_HANDLE;
+  check(device_->api().CreateImageView(device_->handle(), &info, nullptr, &view), "creating a view of an image");
+  return view;
+}
+
+Image::~Image() {
+  if (!handle_) return;
+  device_->retire([device = device_, handle = handle_, view = view_, target = target_view_,
+                   memory = share(std::move(allocation_))] {
+    device->api().DestroyImageView(device->handle(), view, nullptr);
+    device->api().DestroyImageView(device->handle(), target, nullptr);
+    device->api().DestroyImage(device->handle(), handle, nullptr);
+  });
+}
+
+void Image::swap(Image& other) noexcept {
+  std::swap(device_, other.device_);
+  std::swap(handle_, other.handle_);
+  std::swap(view_, other.view_);
+  std::swap(target_view_, other.target_view_);
+  std::swap(aspect_, other.aspect_);
+  std::swap(desc_, other.desc_);
+  std::swap(allocation_, other.allocation_);
+  std::swap(state_, other.state_);
+}
+
+Sampler::Sampler(Device& device, const SamplerDesc& desc, std::string_view name) : device_(&device) {
+  const VkSamplerCreateInfo info{
+      .sType = VK_STRUCTURE_TYPE_SAMPLER_CREATE_INFO,
+      .magFilter = desc.filter,
+      .minFilter = desc.filter,
+      .mipmapMode = desc.filter == VK_FILTER_LINEAR ? VK_SAMPLER_MIPMAP_MODE_LINEAR : VK_SAMPLER_MIPMAP_MODE_NEAREST,
+      .addressModeU = desc.address_u,
+      .addressModeV = desc.address_v,
+      .addressModeW = VK_SAMPLER_ADDRESS_MODE_CLAMP_TO_EDGE,
+      .maxLod = VK_LOD_CLAMP_NONE};
+  check(device.api().CreateSampler(device.handle(), &info, nullptr, &handle_), fmt::format("creating '{}'", name));
+  device.setName(VK_OBJECT_TYPE_SAMPLER, bitsOf(handle_), name);
+}
+
+Sampler::~Sampler() {
+  if (!handle_) return;
+  device_->retire(
+      [device = device_, handle = handle_] { device->api().DestroySampler(device->handle(), handle, nullptr); });
+}
+
+void Sampler::swap(Sampler& other) noexcept {
+  std::swap(device_, other.device_);
+  std::swap(handle_, other.handle_);
+}
+
+}  // namespace nephroid::gpu
