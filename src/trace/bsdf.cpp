@@ -3,8 +3,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "core/optics/fresnel.shared.h"
-#include "core/optics/microfacet.shared.h"
 #include "core/optics/refraction.shared.h"
 #include "core/sampling/warp.h"
 
@@ -37,14 +35,13 @@ Bsdf::Bsdf(const SurfaceMaterial& material, const SurfacePoint& point, vec3 wo, 
   const float fresnel_o = fresnelAt(cos_o);
   reflectance_ = reflectanceAt(cos_o, fresnel_o);
   transmittance_ = transmittanceFor(fresnel_o);
-  const float base_weight = (1.0F - material.metallic) * (1.0F - material.transmission);
   base_scale_ = vec3(0.0F);
   base_albedo_ = vec3(0.0F);
   base_factor_o_ = vec3(0.0F);
+  const float base_weight = baseWeight(surface());
   if (base_weight > 0.0F) {
-    base_scale_ = base_weight * material.base;
-    if (material.gloss > 0.0F)
-      base_scale_ /= 1.0F - material.gloss * averageFresnel(ior_to_ / ior_from_) * material.specular_tint;
+    if (material.gloss > 0.0F) average_fresnel_ = averageFresnel(ior_to_ / ior_from_);
+    base_scale_ = baseScale(surface());
     base_factor_o_ = baseFactorFor(fresnel_o);
     base_albedo_ = base_weight * material.base * base_factor_o_;
   }
@@ -54,39 +51,8 @@ Bsdf::Bsdf(const SurfaceMaterial& material, const SurfacePoint& point, vec3 wo, 
   interface_probability_ = sum > 0.0F ? interface_weight / sum : 0.0F;
 }
 
-float Bsdf::fresnelAt(float cos_theta) const {
-  const bool wanted = material_.metallic < 1.0F && material_.gloss > 0.0F;
-  return wanted ? fresnelDielectric(cos_theta, ior_from_ / ior_to_) : 0.0F;
-}
-
 vec3 Bsdf::reflectanceAt(float cos_theta, float fresnel) const {
-  const SurfaceMaterial& m = material_;
-  vec3 reflectance(0.0F);
-  if (m.metallic > 0.0F) {
-    const Material& source = *m.source;
-    reflectance =
-        m.metallic * (source.conductor_ior ? fresnelConductor(cos_theta, *source.conductor_ior, source.conductor_k)
-                                           : fresnelSchlick(cos_theta, m.base));
-  }
-  if (m.metallic < 1.0F && m.gloss > 0.0F) {
-    const float r = m.is_pane ? fresnelThinPane(fresnel) : fresnel;
-    reflectance += (1.0F - m.metallic) * m.gloss * r * m.specular_tint;
-  }
-  return reflectance;
-}
-
-vec3 Bsdf::transmittanceFor(float fresnel) const {
-  const SurfaceMaterial& m = material_;
-  if (m.transmission == 0.0F || m.metallic == 1.0F) return vec3(0.0F);
-  const float r = m.is_pane ? fresnelThinPane(fresnel) : fresnel;
-  // Beyond the critical angle there is no direction to transmit into, whatever the tint.
-  if (r >= 1.0F) return vec3(0.0F);
-  return (1.0F - m.metallic) * m.transmission * m.base * (1.0F - r * m.specular_tint);
-}
-
-vec3 Bsdf::baseFactorFor(float fresnel) const {
-  if (material_.gloss == 0.0F) return vec3(1.0F);
-  return 1.0F - material_.gloss * fresnel * material_.specular_tint;
+  return interfaceReflectance(surface(), cos_theta, fresnel);
 }
 
 float Bsdf::radianceScale(Transport transport) const {
@@ -113,7 +79,7 @@ BsdfValue Bsdf::evaluate(EventClass c, vec3 wi, Transport transport) const {
     value.pdf *= p_interface;
   }
   if (c == EventClass::kDiffuse && reflected) {
-    value.f += base_scale_ * baseFactorFor(fresnelAt(cos_i)) * base_factor_o_ * (1.0F / kPi);
+    value.f += evaluateBase(base_scale_, base_factor_o_, baseFactorFor(fresnelAt(cos_i)));
     value.pdf += (1.0F - p_interface) * cos_i * (1.0F / kPi);
   }
   return value;
@@ -141,7 +107,7 @@ BsdfValue Bsdf::evaluateInterface(vec3 wi, bool reflected, Transport transport) 
   const float pdf_h = pdfGgxVndf(wo_local_, h, alpha);
   if (reflected || pane_transmission) {
     if (wi_h <= 0.0F) return value;
-    value.f = (reflected ? r : t) * (d * ggxG2(wi, wo_local_, alpha) / (4.0F * wo_local_.z * wi.z));
+    value.f = (reflected ? r : t) * evaluateFacets(wo_local_, wi, h, alpha);
     value.pdf = (reflected ? p_reflect : 1.0F - p_reflect) * pdf_h / (4.0F * wo_h);
     return value;
   }
@@ -186,7 +152,7 @@ std::optional<BsdfSample> Bsdf::sampleBase(vec2 u) const {
   s.dir = Frame::fromZ(normal_).toWorld(local);
   if (local.z <= 0.0F || !sameSide(s.dir)) return std::nullopt;
   s.pdf = local.z * (1.0F / kPi);
-  s.weight = base_scale_ * baseFactorFor(fresnelAt(local.z)) * base_factor_o_;
+  s.weight = kPi * evaluateBase(base_scale_, base_factor_o_, baseFactorFor(fresnelAt(local.z)));
   return s;
 }
 

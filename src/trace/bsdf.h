@@ -4,14 +4,9 @@
 // straight transmission through a smooth pane is no event. The two classes are kept apart everywhere (sampled,
 // evaluated and weighted on their own), because a path's layer depends on the class.
 //
-//   interface, reflected     R(θ) = metallic·F_metal(θ) + (1 − metallic)·gloss·tint·F(θ)
-//   interface, transmitted   T(θ) = (1 − metallic)·transmission·baseColor·(1 − tint·F(θ))
-//   base                     f = (1 − metallic)(1 − transmission)·baseColor/π · (1 − gF(θi))(1 − gF(θo)) / (1 − g<F>)
-//
-// with F the exact dielectric Fresnel reflectance, F_metal Schlick's with F0 = baseColor (glTF) or the exact one of a
-// complex index, g = gloss·tint. The base's form is reciprocal and, for a white base under a smooth interface, loses
-// and gains nothing (after Kelemen & Szirmay-Kalos 2001); glTF's own (1 − F(v·h)) would return up to 1.9 times what
-// arrives at grazing angles. GGX with visible-normal sampling (Walter et al. 2007; Heitz 2018).
+// The formulas are those of core/optics/surface.shared.h, which shaders read too. Here they are sampled, light is
+// refracted, and what depends on wo alone is computed once. GGX with visible-normal sampling ([walter-2007],
+// [heitz-2018]).
 #pragma once
 
 #include <cstdint>
@@ -71,11 +66,12 @@ class Bsdf {
   vec3 normal() const { return normal_; }
 
  private:
-  /// Reflectance of one face for all that follow; 0 where none of them asks.
-  float fresnelAt(float cos_theta) const;
+  SurfaceOptics surface() const { return makeSurfaceOptics(material_, ior_from_, ior_to_, average_fresnel_); }
+  float fresnelAt(float cos_theta) const { return interfaceFresnel(surface(), cos_theta); }
+  /// Not inline: three times the formulas of metals would crowd out the rest.
   vec3 reflectanceAt(float cos_theta, float fresnel) const;
-  vec3 transmittanceFor(float fresnel) const;
-  vec3 baseFactorFor(float fresnel) const;
+  vec3 transmittanceFor(float fresnel) const { return interfaceTransmittance(surface(), fresnel); }
+  vec3 baseFactorFor(float fresnel) const { return baseFactor(surface(), fresnel); }
   bool sameSide(vec3 w) const { return (dot(w, normal_geometric_) > 0.0F) == side_is_outward_; }
   BsdfValue evaluateInterface(vec3 wi_local, bool reflected, Transport transport) const;
   std::optional<BsdfSample> sampleInterface(vec2 u, float u_lobe, Transport transport) const;
@@ -92,6 +88,7 @@ class Bsdf {
   Frame frame_;  ///< z = normal_
   vec3 wo_local_;
   float ior_from_, ior_to_;
+  float average_fresnel_ = 0.0F;  ///< of surfaces with a base only
   bool smooth_, interface_is_specular_, index_matched_;
   float interface_probability_;
   vec3 reflectance_, transmittance_, base_albedo_, base_scale_;

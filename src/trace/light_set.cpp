@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/optics/lights.shared.h"
 #include "core/sampling/warp.h"
 
 namespace nephroid {
@@ -44,11 +45,7 @@ float meanOverSphere(const Image& image) {
 
 vec3 intensityAlong(const Light& light, vec3 dir) {
   if (light.kind != LightKind::kSpot) return light.intensity;
-  // glTF's KHR_lights_punctual: the squared linear ramp between the cosines of the two cones.
-  const float cos_outer = std::cos(light.outer_cone), cos_inner = std::cos(light.inner_cone);
-  const float ramp = (dot(dir, light.direction) - cos_outer) / std::max(cos_inner - cos_outer, 1e-7F);
-  const float t = std::clamp(ramp, 0.0F, 1.0F);
-  return light.intensity * (t * t);
+  return spotIntensity(light.intensity, light.direction, std::cos(light.inner_cone), std::cos(light.outer_cone), dir);
 }
 
 double sunOneMinusCos(const Light& sun) {
@@ -195,7 +192,7 @@ std::optional<LightSample> LightSet::samplePunctual(const Light& light, vec3 pos
       s.dir = -light.direction;
       s.delta = true;
       s.pdf = 1.0F;
-      s.radiance = light.intensity;
+      s.radiance = irradianceFromSun(light.intensity, 1.0F);
     }
     return s;
   }
@@ -208,7 +205,7 @@ std::optional<LightSample> LightSet::samplePunctual(const Light& light, vec3 pos
     s.distance = centre_distance;
     s.delta = true;
     s.pdf = 1.0F;
-    s.radiance = intensityAlong(light, -s.dir) / squared;
+    s.radiance = irradianceFromPoint(intensityAlong(light, -s.dir), squared, 1.0F);
     return s;
   }
   // The cone that the sphere subtends, uniformly; 1 − cos from sin² without cancellation.

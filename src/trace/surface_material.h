@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "core/math.h"
+#include "core/optics/surface.shared.h"
 #include "scene/classify.h"
 #include "scene/scene_data.h"
 #include "trace/trace_scene.h"
@@ -25,6 +26,32 @@ struct SurfaceMaterial {
 
 /// Hemispherical average of the Fresnel reflectance towards a medium of relative index `ior` (to / from), tabulated.
 float averageFresnel(float ior);
+
+/// A material between two media, as the formulas of core/optics/surface.shared.h take it. Inline, so that whoever needs
+/// one formula reads only the fields that it takes.
+/// @param ior_from,ior_to  indices on the side looked at and behind; behind what is not solid, of its own substance
+/// @param average_fresnel  averageFresnel(ior_to / ior_from) where the base is asked for, else anything
+inline SurfaceOptics makeSurfaceOptics(const SurfaceMaterial& m, float ior_from, float ior_to, float average_fresnel) {
+  SurfaceOptics s{};
+  s.base = m.base;
+  s.metallic = m.metallic;
+  s.alpha = m.alpha;
+  s.transmission = m.transmission;
+  s.gloss = m.gloss;
+  s.specular_tint = m.specular_tint;
+  s.ior_from = ior_from;
+  s.ior_to = ior_to;
+  s.average_fresnel = average_fresnel;
+  s.is_pane = m.is_pane ? 1U : 0U;
+  s.is_solid = m.is_solid ? 1U : 0U;
+  // Asked of metals only: what photons meet mostly is not, and the source lies elsewhere in memory.
+  if (m.metallic > 0.0F && m.source->conductor_ior) {
+    s.conductor_ior = *m.source->conductor_ior;
+    s.conductor_k = m.source->conductor_k;
+    s.has_conductor = 1;
+  }
+  return s;
+}
 
 /// All materials of a scene, resolved once where nothing varies over the surface.
 class MaterialTable {

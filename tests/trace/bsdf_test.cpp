@@ -2,6 +2,9 @@
 
 #include <gtest/gtest.h>
 
+#include <utility>
+#include <vector>
+
 #include "core/sampling/sampler.h"
 #include "core/sampling/warp.h"
 #include "scene/classify.h"
@@ -178,6 +181,54 @@ TEST(Bsdf, RefractionIsReciprocalUpToTheSquaredIndices) {
       surface.at(inside, 1.5F, 1.0F).evaluate(EventClass::kSpecular, outside, Transport::kRadiance).f.x;
   EXPECT_GT(in_to_out, 0.0F);
   EXPECT_NEAR(out_to_in / 2.25F, in_to_out, 1e-3F * in_to_out);
+}
+
+TEST(Bsdf, IsWhatTheSharedFormulasSayOfAReceiver) {
+  // What shaders evaluate is what is sampled here, for every kind of receiver, from outside and from inside.
+  std::vector<Material> materials{makeDiffuse(vec3(0.8F, 0.5F, 0.2F)), makeMetal(vec3(0.9F, 0.6F, 0.3F), 0.7F),
+                                  makeMetal(vec3(0.9F), 0.1F), makeGlass(1.5F, 0.8F), makeGlass(1.5F)};
+  Material mixture = makeDiffuse(vec3(0.8F, 0.5F, 0.2F));
+  mixture.metallic = 0.4F;
+  mixture.transmission = 0.3F;
+  for (const float thickness : {0.0F, 1.0F})
+    for (const float roughness : {0.0F, 0.3F, 0.5F, 0.8F, 1.0F}) {
+      mixture.thickness = thickness;
+      mixture.roughness = roughness;
+      materials.push_back(mixture);
+    }
+  Material gold = makeMetal(vec3(1.0F), 0.6F);
+  gold.conductor_ior = vec3(0.18F, 0.42F, 1.37F);
+  gold.conductor_k = vec3(3.42F, 2.35F, 1.77F);
+  materials.push_back(gold);
+  const vec3 normal = normalize(vec3(0.3F, 0.9F, -0.2F));
+  const Frame frame = Frame::fromZ(normal);
+  int lit = 0;
+  for (const Material& m : materials) {
+    Surface surface(m);
+    surface.resolved.specular_tint = vec3(1.0F, 0.8F, 0.5F);
+    surface.point.normal_geometric = surface.point.normal_shading = normal;
+    for (const auto& [ior_from, inner] : {std::pair{1.0F, 1.5F}, std::pair{1.5F, 1.0F}}) {
+      const float ior_to = surface.resolved.is_solid ? inner : m.ior;
+      const SurfaceOptics optics =
+          makeSurfaceOptics(surface.resolved, ior_from, ior_to, averageFresnel(ior_to / ior_from));
+      for (std::uint32_t i = 0; i < 200; ++i) {
+        Sampler sampler(4, 2, i);
+        const vec3 wo = sampleCosineHemisphere(sampler.next2D());
+        vec3 wi = sampleCosineHemisphere(sampler.next2D());
+        if (i % 8 == 0) wi.z = -wi.z;
+        const vec3 expected = evaluateReceiver(optics, wo, wi, kDefaultSpecularAlpha);
+        // What is transmitted is not the receiver's.
+        const vec3 value = wi.z > 0.0F ? surface.at(frame.toWorld(wo), ior_from, inner)
+                                             .evaluate(EventClass::kDiffuse, frame.toWorld(wi), Transport::kRadiance)
+                                             .f
+                                       : vec3(0.0F);
+        // Near the critical angle the last bits of a direction are seen in F.
+        EXPECT_LE(length(value - expected), 2e-3F * length(expected) + 1e-7F) << m.name << ' ' << m.roughness;
+        lit += maxComponent(expected) > 0.0F;
+      }
+    }
+  }
+  EXPECT_GT(lit, 3000);
 }
 
 TEST(AverageFresnel, IsReciprocalAndKnownAtGlass) {

@@ -6,16 +6,19 @@
 #include "absorption.shared.h"
 #include "dispersion.shared.h"
 #include "fresnel.shared.h"
+#include "lights.shared.h"
 #include "microfacet.shared.h"
 #include "photon.shared.h"
 #include "ray_differential.shared.h"
 #include "refraction.shared.h"
+#include "surface.shared.h"
 
 layout(local_size_x = 64) in;
 
 layout(scalar, set = 0, binding = 0) buffer Photons { Photon photons[]; };
 layout(scalar, set = 0, binding = 1) readonly buffer Batches { PhotonBatch batches[]; };
 layout(scalar, set = 0, binding = 2) writeonly buffer Results { vec3 results[]; };
+layout(scalar, set = 0, binding = 3) readonly buffer Surfaces { SurfaceOptics surfaces[]; };
 
 vec3 scatter(Photon p, vec3 n) {
   float cos_theta_i = -dot(p.direction, n);
@@ -37,6 +40,14 @@ RayDifferential propagate(Photon p, vec3 n) {
   return refractDifferential(r, p.direction, n, dn, 1.0 / 1.5);
 }
 
+vec3 receive(SurfaceOptics surface, Photon p, vec3 n) {
+  float cos_theta_i = -dot(p.direction, n);
+  vec3 intensity = spotIntensity(p.flux, n, 0.9, 0.8, p.direction) * spotFalloff(cos_theta_i, 0.9, 0.8);
+  vec3 irradiance = irradianceFromPoint(intensity, p.path_length, cos_theta_i) + irradianceFromSun(p.flux, cos_theta_i);
+  vec3 passed = interfaceTransmittance(surface, interfaceFresnel(surface, cos_theta_i));
+  return evaluateReceiver(surface, n, -p.direction, 0.25) * irradiance * passed;
+}
+
 void main() {
   uint i = gl_GlobalInvocationID.x;
   if (i >= batches[0].emitted_count || batches[0].band_count == 0u) return;
@@ -49,5 +60,5 @@ void main() {
   p.light_band_flags = packLightBandFlags(photonLight(p), photonBand(p), photonFlags(p) | kPhotonValid);
   if (hasPhotonFlag(p, kPhotonLeftScene)) p.flux = vec3(0.0);
   photons[i] = p;
-  results[i] = scatter(p, n) + footprint.axis_a + footprint.axis_b;
+  results[i] = scatter(p, n) + receive(surfaces[i], p, n) + footprint.axis_a + footprint.axis_b;
 }
