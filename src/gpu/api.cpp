@@ -69,7 +69,9 @@ void check(VkResult result, std::string_view what) {
           "or choose another with --device",
           what));
     case VK_ERROR_INCOMPATIBLE_DRIVER:
-      throw DeviceError(fmt::format("no Vulkan driver fits while {}; `nephroid devices` lists what there is", what));
+      throw DeviceError(fmt::format(
+          "no Vulkan driver (while {}): install one (mesa-vulkan-drivers draws on the CPU), or use --device cpu",
+          what));
     default:
       throw InternalError(fmt::format("Vulkan error {} while {}", static_cast<int>(result), what));
   }

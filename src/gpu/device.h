@@ -9,6 +9,7 @@
 #include <string_view>
 
 #include "gpu/device_list.h"
+#include "gpu/instance.h"
 #include "gpu/memory.h"
 
 namespace nephroid::gpu {

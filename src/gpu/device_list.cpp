@@ -7,6 +7,7 @@
 #include <cstring>
 #include <optional>
 
+#include "gpu/instance.h"
 #include "gpu/requirements.h"
 #include "nephroid/error.h"
 

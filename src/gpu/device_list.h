@@ -6,12 +6,14 @@
 #include <string_view>
 #include <vector>
 
-#include "gpu/instance.h"
+struct VkPhysicalDevice_T;  // by name, so that whoever only reads a list needs no Vulkan headers
 
 namespace nephroid::gpu {
 
+class Instance;
+
 struct DeviceInfo {
-  VkPhysicalDevice handle = VK_NULL_HANDLE;
+  VkPhysicalDevice_T* handle = nullptr;  ///< a VkPhysicalDevice; valid as long as its instance
   std::string name;
   std::string kind;                  ///< "discrete GPU", "integrated GPU", "virtual GPU", "CPU", "other"
   std::string driver;                ///< name and version as the driver says them

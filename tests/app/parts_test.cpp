@@ -7,6 +7,7 @@
 
 #include "api/display.h"
 #include "app/cli/bench.h"
+#include "app/cli/devices.h"
 #include "app/cli/help.h"
 #include "app/cli/memory.h"
 #include "app/cli/options.h"
@@ -104,6 +105,82 @@ TEST(CheckMemory, RefusesWhatCannotFitAndSaysWhatToLower) {
   EXPECT_NO_THROW(checkMemory(10, 10));
   EXPECT_THROW(checkMemory(11, 10), ResourceError);
   EXPECT_GT(readAvailableMemory(), 1);
+}
+
+gpu::DeviceInfo makeDevice(std::string name, std::string kind) {
+  gpu::DeviceInfo device;
+  device.name = std::move(name);
+  device.kind = std::move(kind);
+  device.driver = "Maker 1.2";
+  device.api_version = "1.3.230";
+  device.memory_bytes = std::uint64_t{3} << 29;
+  return device;
+}
+
+TEST(FormatDevices, HasABlockForEachDeviceAndALastLineForAuto) {
+  gpu::DeviceInfo good = makeDevice("Fast One", "discrete GPU");
+  good.float_atomics = true;
+  good.timestamp_period_ns = 2;
+  gpu::DeviceInfo poor = makeDevice("Slow One", "integrated GPU");
+  poor.memory_bytes = std::uint64_t{256} << 20;
+  poor.missing = {"multiview", "VK_KHR_push_descriptor"};
+  const gpu::DeviceSurvey survey{{poor, good}, 1, "the only discrete GPU"};
+  EXPECT_EQ(formatDevices(survey), R"(0  Slow One
+   kind     integrated GPU
+   driver   Maker 1.2
+   Vulkan   1.3.230
+   memory   256 MiB
+   usable   no, it lacks multiview, VK_KHR_push_descriptor
+
+1  Fast One
+   kind     discrete GPU
+   driver   Maker 1.2
+   Vulkan   1.3.230
+   memory   1.5 GiB
+   usable   yes
+   extras   float atomics, timestamps (no ray tracing pipeline)
+
+auto takes 1: the only discrete GPU
+)");
+}
+
+TEST(FormatDevices, TellsAllAndNoExtras) {
+  gpu::DeviceInfo device = makeDevice("One", "CPU");
+  EXPECT_THAT(formatDevices({{device}, 0, "why"}),
+              HasSubstr("extras   none (no float atomics, no ray tracing pipeline, no timestamps)\n"));
+  device.float_atomics = device.ray_tracing_pipeline = true;
+  device.timestamp_period_ns = 1;
+  EXPECT_THAT(formatDevices({{device}, 0, "why"}),
+              HasSubstr("extras   float atomics, ray tracing pipeline, timestamps\n"));
+}
+
+TEST(FormatDevices, SaysNothingOfTheDriverThatWasNotAsked) {
+  gpu::DeviceInfo old = makeDevice("Old", "discrete GPU");
+  old.driver = "";
+  old.missing = {"Vulkan 1.3 (has 1.2.0)"};
+  const std::string text = formatDevices({{old}, std::nullopt, "no usable Vulkan device; use --device cpu"});
+  EXPECT_THAT(text, Not(HasSubstr("driver")));
+  EXPECT_THAT(text, Not(HasSubstr("extras")));
+  EXPECT_THAT(text, HasSubstr("usable   no, it lacks Vulkan 1.3 (has 1.2.0)\n"));
+  EXPECT_THAT(text, ::testing::EndsWith("\nauto takes none: no usable Vulkan device; use --device cpu\n"));
+}
+
+TEST(FormatDevices, IsOneLineWhereThereIsNoDevice) {
+  EXPECT_EQ(formatDevices({{}, std::nullopt, "no Vulkan\nloader"}), "only the CPU: no Vulkan loader\n");
+}
+
+TEST(DevicesToJson, HasEveryFieldAndTheChoice) {
+  gpu::DeviceInfo device = makeDevice("One", "virtual GPU");
+  device.missing = {"multiview"};
+  device.ray_tracing_pipeline = true;
+  device.timestamp_period_ns = 2.5F;
+  const nlohmann::ordered_json json = devicesToJson({{device}, std::nullopt, "none fits"});
+  EXPECT_EQ(json, nlohmann::ordered_json::parse(R"({
+    "devices": [{"device": 0, "name": "One", "kind": "virtual GPU", "driver": "Maker 1.2", "vulkan": "1.3.230",
+      "memory_bytes": 1610612736, "usable": false, "missing": ["multiview"], "float_atomics": false,
+      "ray_tracing_pipeline": true, "timestamps": true, "timestamp_period_ns": 2.5}],
+    "auto": null, "reason": "none fits"})"));
+  EXPECT_EQ(devicesToJson({{device}, 0, "asked for"})["auto"], 0);
 }
 
 LayeredImage makeLayer(const std::string& name, int channels, std::vector<float> pixels) {

@@ -14,8 +14,8 @@ using ::testing::HasSubstr;
 using ::testing::Not;
 using ::testing::StartsWith;
 
-const std::vector<std::string> kCommands{"render",     "compare",    "bench",  "info", "scenes",
-                                         "techniques", "completion", "manual", "help"};
+const std::vector<std::string> kCommands{"render",     "compare", "bench",      "info",   "scenes",
+                                         "techniques", "devices", "completion", "manual", "help"};
 
 /// Exit code 2, nothing on stdout, one line "error: …" on stderr that holds `text`.
 void expectUsageError(const std::vector<std::string>& arguments, const std::string& text) {
@@ -160,6 +160,8 @@ std::vector<std::string> complete(const std::string& line) {
 
 TEST(Completion, OffersCommandsOptionsChoicesAndScenes) {
   EXPECT_THAT(complete("nephroid ren"), ::testing::ElementsAre("render"));
+  EXPECT_THAT(complete("nephroid dev"), ::testing::ElementsAre("devices"));
+  EXPECT_THAT(complete("nephroid devices --j"), ::testing::ElementsAre("--json"));
   EXPECT_THAT(complete("nephroid render --tech"), ::testing::ElementsAre("--technique"));
   EXPECT_THAT(complete("nephroid render --technique "), ::testing::Contains("reference"));
   EXPECT_THAT(complete("nephroid render --tonemap f"), ::testing::ElementsAre("filmic"));

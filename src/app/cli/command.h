@@ -21,6 +21,7 @@ Command addBenchCommand(CLI::App& root);
 Command addInfoCommand(CLI::App& root);
 Command addScenesCommand(CLI::App& root);
 Command addTechniquesCommand(CLI::App& root);
+Command addDevicesCommand(CLI::App& root);
 Command addCompletionCommand(CLI::App& root);
 Command addManualCommand(CLI::App& root);
 Command addHelpCommand(CLI::App& root);

@@ -89,9 +89,10 @@ ExitCode runProgram(int argc, char** argv) {
   root.footer(kFooter);
   root.set_help_flag("-h,--help", "Print this help.");
   root.set_version_flag("--version", std::string(version()), "Print the version.");
-  const std::vector<Command> commands{addRenderCommand(root),     addCompareCommand(root), addBenchCommand(root),
-                                      addInfoCommand(root),       addScenesCommand(root),  addTechniquesCommand(root),
-                                      addCompletionCommand(root), addManualCommand(root),  addHelpCommand(root)};
+  const std::vector<Command> commands{addRenderCommand(root),  addCompareCommand(root),    addBenchCommand(root),
+                                      addInfoCommand(root),    addScenesCommand(root),     addTechniquesCommand(root),
+                                      addDevicesCommand(root), addCompletionCommand(root), addManualCommand(root),
+                                      addHelpCommand(root)};
   if (answerHelp(root, {argv, static_cast<std::size_t>(argc)})) return ExitCode::kDone;
   return runCommandLine(root, commands, argc, argv);
 }

@@ -60,7 +60,7 @@ Wrong usage: an unknown option, a value out of range.
 Bad input: a file that is missing, broken or asks for what nephroid does not do.
 .TP
 .B 4
-No suitable device.
+No suitable device; nephroid devices tells what each one lacks, and itself ends with 0.
 .TP
 .B 5
 Out of memory or disk, or a path that cannot be written.
