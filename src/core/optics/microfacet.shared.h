@@ -69,7 +69,8 @@ NEPHROID_FN float ggxG2Transmission(vec3 wi, vec3 wo, float alpha) { return ggxG
 NEPHROID_FN vec3 sampleGgxVndf(vec3 wo, float alpha, vec2 u) {
   // Stretched to alpha 1 the facets are a hemisphere, and its mirror directions of wo fill a spherical cap evenly.
   vec3 w = normalize(vec3(alpha * wo.x, alpha * wo.y, wo.z));
-  float phi = 2.0f * kMicrofacetPi * u.x;
+  // Vulkan promises sine and cosine within [−π, π] only. The difference is exact.
+  float phi = 2.0f * kMicrofacetPi * (u.x < 0.5f ? u.x : u.x - 1.0f);
   float one_minus_z = u.y * (1.0f + w.z);
   float sin_theta = sqrt(max(one_minus_z * (2.0f - one_minus_z), 0.0f));
   vec3 mirrored = vec3(sin_theta * cos(phi), sin_theta * sin(phi), 1.0f - one_minus_z);
