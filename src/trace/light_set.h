@@ -10,6 +10,7 @@
 
 #include "core/math.h"
 #include "core/sampling/distribution.h"
+#include "scene/environment_map.h"
 #include "trace/surface_material.h"
 #include "trace/trace_scene.h"
 
@@ -26,24 +27,6 @@ struct LightSample {
 
 /// Radiance of a punctual light, W/sr, along `dir` (travel): the spot's cone applied.
 vec3 intensityAlong(const Light& light, vec3 dir);
-
-/// Texels of an environment in world directions.
-class EnvironmentMap {
- public:
-  explicit EnvironmentMap(const Environment& environment);
-  vec3 radiance(vec3 dir_to) const;                       ///< from the direction `dir_to` points to
-  vec3 sample(vec2 u, float& pdf_solid_angle) const;      ///< a direction to the environment
-  float pdf(vec3 dir_to) const;                           ///< of `sample`, per solid angle
-  float meanRadiance() const { return mean_luminance_; }  ///< luminance, averaged over the sphere
-  const Environment& source() const { return environment_; }
-
- private:
-  vec2 uvFromDir(vec3 dir) const;
-  Environment environment_;
-  float cos_rotation_, sin_rotation_;
-  Distribution2D distribution_;
-  float mean_luminance_ = 0.0F;
-};
 
 class LightSet {
  public:
