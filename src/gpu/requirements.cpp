@@ -15,6 +15,7 @@ Features::Features() {
 }
 
 void Features::requireNeeded() {
+  core_.features.geometryShader = VK_TRUE;            // gl_PrimitiveID where fragments are shaded
   core_.features.independentBlend = VK_TRUE;          // g-buffers of several formats
   core_.features.fragmentStoresAndAtomics = VK_TRUE;  // lists of layers
   vulkan11_.multiview = VK_TRUE;                      // six faces of a cube map in one pass
@@ -36,6 +37,7 @@ std::vector<std::string> Features::lacking(const Features& needed) const {
   const auto compare = [&](VkBool32 wanted, VkBool32 here, const char* name) {
     if (wanted && !here) names.emplace_back(name);
   };
+  compare(needed.core_.features.geometryShader, core_.features.geometryShader, "geometryShader");
   compare(needed.core_.features.independentBlend, core_.features.independentBlend, "independentBlend");
   compare(needed.core_.features.fragmentStoresAndAtomics, core_.features.fragmentStoresAndAtomics,
           "fragmentStoresAndAtomics");

@@ -113,39 +113,56 @@ Image::Image(Device& device, const ImageDesc& desc, std::string_view name)
     allocation_ = device.memory().allocate(requirements, MemoryIntent::kDevice, false, name);
     check(api.BindImageMemory(device.handle(), handle_, allocation_.memory(), allocation_.offset()),
           fmt::format("binding the image '{}'", name));
-    const bool array = desc.is_array || desc.layers > 1;
-    view_ = makeView(desc.is_cube ? VK_IMAGE_VIEW_TYPE_CUBE
-                     : array      ? VK_IMAGE_VIEW_TYPE_2D_ARRAY
-                                  : VK_IMAGE_VIEW_TYPE_2D,
-                     desc.mips);
-    target_view_ = makeView(array ? VK_IMAGE_VIEW_TYPE_2D_ARRAY : VK_IMAGE_VIEW_TYPE_2D, 1);
+    makeViews();
     device.setName(VK_OBJECT_TYPE_IMAGE, bitsOf(handle_), name);
   } catch (...) {
-    if (view_) api.DestroyImageView(device.handle(), view_, nullptr);
-    if (target_view_) api.DestroyImageView(device.handle(), target_view_, nullptr);
-    api.DestroyImage(device.handle(), handle_, nullptr);
+    destroyNow();
     throw;
   }
 }
 
-VkImageView Image::makeView(VkImageViewType type, std::uint32_t mips) const {
+void Image::makeViews() {
+  const bool array = desc_.is_array || desc_.layers > 1;
+  const VkImageViewType whole = array ? VK_IMAGE_VIEW_TYPE_2D_ARRAY : VK_IMAGE_VIEW_TYPE_2D;
+  view_ = makeView(desc_.is_cube ? VK_IMAGE_VIEW_TYPE_CUBE : whole, desc_.mips, 0, desc_.layers);
+  target_view_ = makeView(whole, 1, 0, desc_.layers);
+  for (std::uint32_t layer = 0; desc_.layers > 1 && layer < desc_.layers; ++layer)
+    layer_views_.push_back(makeView(VK_IMAGE_VIEW_TYPE_2D, 1, layer, 1));
+}
+
+VkImageView Image::makeView(VkImageViewType type, std::uint32_t mips, std::uint32_t first_layer,
+                            std::uint32_t layers) const {
   const VkImageViewCreateInfo info{.sType = VK_STRUCTURE_TYPE_IMAGE_VIEW_CREATE_INFO,
                                    .image = handle_,
                                    .viewType = type,
                                    .format = desc_.format,
-                                   .subresourceRange = {aspect_, 0, mips, 0, desc_.layers}};
+                                   .subresourceRange = {aspect_, 0, mips, first_layer, layers}};
   VkImageView view = VK_NULL_HANDLE;
   check(device_->api().CreateImageView(device_->handle(), &info, nullptr, &view), "creating a view of an image");
   return view;
 }
 
+namespace {
+
+void destroyImage(const Device& device, VkImage handle, std::span<const VkImageView> views) {
+  for (const VkImageView view : views)
+    if (view) device.api().DestroyImageView(device.handle(), view, nullptr);
+  device.api().DestroyImage(device.handle(), handle, nullptr);
+}
+
+}  // namespace
+
+void Image::destroyNow() {
+  layer_views_.insert(layer_views_.end(), {view_, target_view_});
+  destroyImage(*device_, handle_, layer_views_);
+}
+
 Image::~Image() {
   if (!handle_) return;
-  device_->retire([device = device_, handle = handle_, view = view_, target = target_view_,
-                   memory = share(std::move(allocation_))] {
-    device->api().DestroyImageView(device->handle(), view, nullptr);
-    device->api().DestroyImageView(device->handle(), target, nullptr);
-    device->api().DestroyImage(device->handle(), handle, nullptr);
+  std::vector<VkImageView> views = layer_views_;
+  views.insert(views.end(), {view_, target_view_});
+  device_->retire([device = device_, handle = handle_, views, memory = share(std::move(allocation_))] {
+    destroyImage(*device, handle, views);
   });
 }
 
@@ -154,6 +171,7 @@ void Image::swap(Image& other) noexcept {
   std::swap(handle_, other.handle_);
   std::swap(view_, other.view_);
   std::swap(target_view_, other.target_view_);
+  std::swap(layer_views_, other.layer_views_);
   std::swap(aspect_, other.aspect_);
   std::swap(desc_, other.desc_);
   std::swap(allocation_, other.allocation_);

@@ -88,15 +88,20 @@ class Image {
   VkImageView view() const { return view_; }
   /// Of the first mip, as an array of all layers; for rendering to and for storage.
   VkImageView targetView() const { return target_view_; }
+  /// Of one layer of the first mip; for rendering to.
+  VkImageView layerView(std::uint32_t layer) const { return layer_views_.empty() ? target_view_ : layer_views_[layer]; }
   ResourceState& state() const { return state_; }
 
  private:
   void swap(Image& other) noexcept;
-  VkImageView makeView(VkImageViewType type, std::uint32_t mips) const;
+  VkImageView makeView(VkImageViewType type, std::uint32_t mips, std::uint32_t first_layer, std::uint32_t layers) const;
+  void makeViews();
+  void destroyNow();
 
   Device* device_ = nullptr;
   VkImage handle_ = VK_NULL_HANDLE;
   VkImageView view_ = VK_NULL_HANDLE, target_view_ = VK_NULL_HANDLE;
+  std::vector<VkImageView> layer_views_;  ///< where there are several layers
   VkImageAspectFlags aspect_ = 0;
   ImageDesc desc_;
   Allocation allocation_;

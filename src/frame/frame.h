@@ -1,0 +1,79 @@
+// The real-time frame: what the camera sees, lit, as layers. Everything of the picture but the caustic.
+//
+// A frame is one sample of each pixel and of each light. One frame is a real-time picture; the mean of many, each with
+// another place in the pixel and on the lights, converges to what the reference renders.
+#pragma once
+
+#include <memory>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "core/image/image.h"
+#include "frame/light_views.h"
+#include "frame/scene_buffers.h"
+#include "gpu/commands.h"
+
+namespace nephroid {
+
+struct FrameSettings {
+  int width = 1024, height = 768;
+  std::uint32_t shadow_size = 256;  ///< cells along a side of each view of a light; bears on speed only
+  float specular_alpha = 0.25F;     ///< microfacets finer than this are class S
+  std::uint32_t seed = 0;
+};
+
+/// Not thread-safe. Device and scene must outlive it; the scene must not change.
+class RealtimeFrame {
+ public:
+  /// Uploads the scene and makes what all frames need.
+  /// @throws ResourceError
+  RealtimeFrame(gpu::Device& device, const SceneData& scene, const Camera& camera, const FrameSettings& settings);
+  ~RealtimeFrame();
+
+  /// Draws sample `sample` and adds it to the layers that are summed. Waits until the device is done.
+  void render(std::uint32_t sample);
+  /// Starts the sums again.
+  void reset();
+  std::uint32_t samples() const { return samples_; }
+  /// Of the last frame, by pass; those of lights' grids come first.
+  const std::vector<gpu::PassTime>& passTimes() const { return times_; }
+
+  /// Mean of a layer over the samples since `reset`: "direct", "emission".
+  Image readSummed(const std::string& layer);
+  /// A layer of the geometry at the pixels' centres: "albedo", "normal", "position", "depth", "id".
+  Image readGeometry(const std::string& layer);
+
+ private:
+  struct Passes;
+  struct LightGrid;
+  void submitAndWait();
+  void recordCamera(vec2 film_offset);
+  void prepareLight(std::size_t index, std::uint32_t sample);
+  void buildGrid(LightGrid& grid, const LightView& view);
+  void recordLight(const LightGrid& grid);
+  void recordEmission(vec2 film_offset);
+  void drawVisibility(const ViewRecord& view);
+  void uploadEnvironment();
+
+  gpu::Device& device_;
+  const SceneData& scene_;
+  Camera camera_;
+  FrameSettings settings_;
+  Bounds bounds_;
+  gpu::CommandRecorder recorder_;
+  std::unique_ptr<SceneBuffers> buffers_;
+  LightViews light_views_;
+  std::unique_ptr<Passes> passes_;
+  gpu::Buffer camera_view_;
+  gpu::Image seen_, depth_, position_, surface_, direct_, emission_, environment_;
+  gpu::Sampler environment_sampler_;
+  std::vector<LightGrid> light_grids_;
+  std::vector<gpu::PassTime> times_;
+  std::uint32_t samples_ = 0;
+};
+
+/// What the scene asks for and the frame does not do yet, a sentence each.
+std::vector<std::string> describeFrameLimits(const SceneData& scene);
+
+}  // namespace nephroid

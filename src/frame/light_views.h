@@ -1,0 +1,62 @@
+// Every kind of light as points and directions that shine: one view of each light for each sample.
+//
+// A lamp without a size is one point and the same for all samples. Of what has a size (spheres, suns with an angle,
+// emissive meshes, the environment) each sample takes one place or direction, chosen by how much it shines, and the
+// mean over samples converges to the light.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <vector>
+
+#include "core/sampling/distribution.h"
+#include "frame/frame.shared.h"
+#include "scene/environment_map.h"
+#include "scene/scene_data.h"
+
+namespace nephroid {
+
+struct LightView {
+  LightRecord light;
+  std::vector<ViewRecord> views;  ///< 1, or 6 of a cube
+  bool varies = false;            ///< from sample to sample: else its grid may be kept
+};
+
+class LightViews {
+ public:
+  /// Keeps a reference to the scene.
+  /// @param grid_size  cells along a side of each view
+  LightViews(const SceneData& scene, std::uint32_t grid_size, std::uint32_t seed);
+
+  /// Lights of the scene that shine: as many views has each sample, in the same order.
+  std::size_t count() const { return sources_.size(); }
+  /// View `index` of sample `sample`; nothing if it does not shine.
+  std::optional<LightView> make(std::size_t index, std::uint32_t sample) const;
+
+ private:
+  /// An emissive mesh, its triangles in world space.
+  struct MeshLight {
+    std::uint32_t instance = 0;
+    Distribution1D triangles;
+    double area = 0;
+  };
+  enum class Kind : std::uint8_t { kPunctual, kMesh, kEnvironment };
+  struct Source {
+    Kind kind;
+    std::size_t index;
+  };
+  LightView makePunctual(const Light& light, vec2 u) const;
+  std::optional<LightView> makeMesh(const MeshLight& light, vec2 u) const;
+  std::optional<LightView> makeEnvironment(vec2 u) const;
+  void addCube(LightView& view) const;
+  void addParallel(LightView& view) const;
+
+  const SceneData& scene_;
+  Bounds bounds_;
+  std::uint32_t grid_size_, seed_;
+  std::vector<MeshLight> mesh_lights_;
+  std::optional<EnvironmentMap> environment_;
+  std::vector<Source> sources_;
+};
+
+}  // namespace nephroid

@@ -1,0 +1,33 @@
+// Views of the scene: the camera's, and those of a light.
+#pragma once
+
+#include "frame/frame.shared.h"
+#include "scene/scene_data.h"
+
+namespace nephroid {
+
+/// Distances between which a view shows things, m.
+struct DepthRange {
+  float near = 0.0F, far = 1.0F;
+};
+
+/// The range that holds `bounds` as seen from `eye` along `forward`; near is a small part of far where the eye is
+/// inside.
+DepthRange fitDepthRange(const Bounds& bounds, vec3 eye, vec3 forward);
+
+/// @param film_offset  of the sample in its pixel, in [0, 1)², (0.5, 0.5) the centre: what is drawn is shifted by it
+ViewRecord makeCameraView(const Camera& camera, int width, int height, const Bounds& bounds, vec2 film_offset);
+
+/// A perspective view of square pixels. @param half_tangent  of half the angle of view
+ViewRecord makePerspectiveView(vec3 eye, vec3 forward, vec3 up, float half_tangent, const DepthRange& range);
+
+/// One of six views along +x, −x, +y, −y, +z, −z.
+ViewRecord makeCubeView(vec3 eye, int face, const Bounds& bounds);
+
+/// Parallel rays along `direction` that cover `bounds`.
+ViewRecord makeParallelView(vec3 direction, const Bounds& bounds);
+
+/// False only if nothing inside `bounds` can be seen.
+bool mayShow(const ViewRecord& view, const Bounds& bounds);
+
+}  // namespace nephroid
