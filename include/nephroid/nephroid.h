@@ -84,7 +84,10 @@ struct RenderRequest {
   std::uint64_t samples = 0;                  ///< per pixel
   double seconds = 0;                         ///< ends a progressive render; the picture then varies between runs
   std::uint64_t seed = 0;
-  int threads = 0;                                              ///< 0: all cores; the picture does not depend on it
+  int threads = 0;  ///< 0: all cores; the picture does not depend on it
+  /// What computes: "auto" (the best Vulkan device where the technique needs one, else the CPU), "cpu" (no Vulkan at
+  /// all), or the number of a Vulkan device, from 0. `Picture::metadata("device")` tells what it was.
+  std::string device = "auto";
   std::vector<std::pair<std::string, std::string>> parameters;  ///< of the technique: {key, value}
 
   /// Called a few times a second, from any thread but one at a time, with the fraction done, in [0, 1], and a short
@@ -140,8 +143,8 @@ class Picture {
 };
 
 /// Renders `scene`, after adding what it lacks (see `Scene::warnings`).
-/// @throws UsageError for what is unknown or out of range, ResourceError when memory is short, InterruptedError if
-///         stopped before there was anything to keep
+/// @throws UsageError for what is unknown or out of range, DeviceError where there is no device for it, ResourceError
+///         when memory is short, InterruptedError if stopped before there was anything to keep
 Picture render(Scene& scene, const RenderRequest& request = {});
 
 }  // namespace nephroid

@@ -76,6 +76,7 @@ RenderSettings makeSettings(const RenderRequest& request, const Technique& techn
   settings.seconds = request.seconds;
   settings.seed = request.seed;
   settings.threads = request.threads;
+  settings.device = request.device;
   settings.params = ParamSet(technique.params);
   for (const auto& [key, value] : request.parameters) settings.params.set(key, value);
   return settings;

@@ -1,8 +1,13 @@
 #include <fmt/format.h>
 
+#include <algorithm>
+
 #include "nephroid/error.h"
 #include "techniques/reference/reference.h"
 #include "techniques/technique.h"
+#ifdef NEPHROID_VULKAN
+#include "techniques/none/none.h"
+#endif
 
 namespace nephroid {
 
@@ -10,6 +15,9 @@ std::span<const Technique> techniques() {
   // One line a technique: an explicit list, because static registration is dropped by linkers of static libraries.
   static const Technique list[] = {
       makeReferenceTechnique(),
+#ifdef NEPHROID_VULKAN
+      makeNoneTechnique(),
+#endif
   };
   return list;
 }
@@ -21,6 +29,24 @@ const Technique& findTechnique(std::string_view name) {
     names.push_back(technique.name);
   }
   throw UsageError(fmt::format("no technique '{}'; there are: {}", name, fmt::join(names, ", ")));
+}
+
+bool takesDevice(const Technique& technique, std::string_view device) {
+  return device == "auto" || (device == "cpu") != technique.on_vulkan;
+}
+
+void checkDevice(const Technique& technique, std::string_view device) {
+  const bool is_number =
+      !device.empty() && std::all_of(device.begin(), device.end(), [](char c) { return c >= '0' && c <= '9'; });
+  if (device != "auto" && device != "cpu" && !is_number)
+    throw UsageError(fmt::format("--device {}: expected auto, cpu or the number of a device", device));
+  if (takesDevice(technique, device)) return;
+  throw UsageError(
+      technique.on_vulkan
+          ? fmt::format("--device {}: technique {} needs a Vulkan device; use --device auto or --technique reference",
+                        device, technique.name)
+          : fmt::format("--device {}: technique {} computes on the CPU; use --device auto, or another technique",
+                        device, technique.name));
 }
 
 }  // namespace nephroid

@@ -23,13 +23,15 @@ struct RenderSettings {
   std::uint64_t samples = 0;                  ///< per pixel
   double seconds = 0;
   std::uint64_t seed = 0;
-  int threads = 0;  ///< 0: all cores
-  ParamSet params;  ///< of the technique, from --set
+  int threads = 0;              ///< 0: all cores
+  std::string device = "auto";  ///< "auto", "cpu" or the number of a Vulkan device
+  ParamSet params;              ///< of the technique, from --set
 };
 
 struct StageTime {
   std::string name;
   double seconds = 0;
+  std::uint64_t frames = 0;  ///< that `seconds` is the sum over; 0: no part of a frame
 };
 
 /// What was done; varies between equal runs, so it goes into files only with --stats.
@@ -42,7 +44,7 @@ struct RenderStats {
 };
 
 struct RenderResult {
-  LayeredImage image;  ///< the layers asked for; metadata: technique, parameters, seed, budgets spent
+  LayeredImage image;  ///< the layers asked for; metadata: technique, device, parameters, seed, budgets spent
   RenderStats stats;
   std::vector<Ledger> ledgers;     ///< one per light that photons were emitted from
   std::vector<std::string> notes;  ///< what a layer does not contain and why
@@ -54,9 +56,10 @@ struct Technique {
   std::string name;
   std::string text;
   std::string source;
+  bool on_vulkan = false;  ///< needs a Vulkan device; else computes on the CPU alone
   std::vector<ParamSpec> params;
   /// Pictures of the same scene, settings and seed are identical for any thread count unless a time budget ends them.
-  /// @throws UsageError, ResourceError, InterruptedError (stopped before there was anything to keep)
+  /// @throws UsageError, DeviceError, ResourceError, InterruptedError (stopped before there was anything to keep)
   RenderResult (*render)(const SceneData& scene, const Camera& camera, const RenderSettings& settings,
                          ProgressSink* progress, const StopToken* stop);
 };
@@ -64,5 +67,11 @@ struct Technique {
 std::span<const Technique> techniques();
 /// @throws UsageError with the names there are
 const Technique& findTechnique(std::string_view name);
+
+/// Whether the technique has a use for RenderSettings::device.
+bool takesDevice(const Technique& technique, std::string_view device);
+/// Only its form: whether there is such a device is known once Vulkan is asked.
+/// @throws UsageError if the technique does not take it, or nothing is called so
+void checkDevice(const Technique& technique, std::string_view device);
 
 }  // namespace nephroid

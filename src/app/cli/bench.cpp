@@ -7,6 +7,7 @@
 #include <chrono>
 #include <fstream>
 #include <nlohmann/json.hpp>
+#include <optional>
 #include <thread>
 
 #include "app/cli/command.h"
@@ -54,20 +55,29 @@ void addMeasured(std::vector<Measurement>& measurements, const std::string& name
   found->values.push_back(value);
 }
 
-/// One timed render.
-void measureRender(const Technique& technique, const SceneData& scene, const RenderSettings& settings,
-                   std::vector<Measurement>& measurements) {
+/// A stage as time of a frame, if it is a part of one; frames are what real time is counted in.
+void addStage(std::vector<Measurement>& measurements, const StageTime& stage) {
+  if (stage.frames == 0) return addMeasured(measurements, stage.name, "s", stage.seconds);
+  addMeasured(measurements, stage.name + " / frame", "ms", 1e3 * stage.seconds / static_cast<double>(stage.frames));
+}
+
+/// One timed render. @return what computed it
+std::string measureRender(const Technique& technique, const SceneData& scene, const RenderSettings& settings,
+                          std::vector<Measurement>& measurements) {
   const Camera camera = selectCamera(scene, "0");
   resetPeakMemory();
   const Clock::time_point start = Clock::now();
   const RenderResult result = technique.render(scene, camera, settings, nullptr, &stopToken());
   const double total_s = secondsSince(start);
-  if (stopToken().requested()) return;  // half a measurement would be a wrong one
+  if (stopToken().requested()) return "";  // half a measurement would be a wrong one
   addMeasured(measurements, "total", "s", total_s);
-  for (const StageTime& stage : result.stats.stages) addMeasured(measurements, stage.name, "s", stage.seconds);
-  addMeasured(measurements, "rays", "1/s", static_cast<double>(result.stats.rays) / total_s);
-  addMeasured(measurements, "photons", "1/s", static_cast<double>(result.stats.photons) / total_s);
+  for (const StageTime& stage : result.stats.stages) addStage(measurements, stage);
+  if (result.stats.rays > 0) {  // a frame of triangles has none of either
+    addMeasured(measurements, "rays", "1/s", static_cast<double>(result.stats.rays) / total_s);
+    addMeasured(measurements, "photons", "1/s", static_cast<double>(result.stats.photons) / total_s);
+  }
   addMeasured(measurements, "peak memory", "MiB", readPeakMemory());
+  return result.image.metadata.at("device");
 }
 
 BenchResult benchScene(const std::string& source, const Technique& technique, const BenchOptions& options) {
@@ -75,7 +85,7 @@ BenchResult benchScene(const std::string& source, const Technique& technique, co
   technique_options.name = technique.name;
   RenderSettings settings = makeSettings(technique_options);
   settings.layers = {"beauty"};
-  BenchResult result{source, technique.name, {}};
+  BenchResult result{source, technique.name, {}, {}};
   const Clock::time_point start = Clock::now();
   const SceneData scene = loadEditedScene({.scene = source}, 0.0F);
   const double load_s = secondsSince(start);
@@ -84,7 +94,7 @@ BenchResult benchScene(const std::string& source, const Technique& technique, co
   std::vector<Measurement> warmup;
   for (int run = 0; run < run_count && !stopToken().requested(); ++run) {
     bar.update(static_cast<double>(run) / run_count, run < options.warmup ? "warming up" : "measuring");
-    measureRender(technique, scene, settings, run < options.warmup ? warmup : result.measurements);
+    result.device = measureRender(technique, scene, settings, run < options.warmup ? warmup : result.measurements);
   }
   addMeasured(result.measurements, "load", "s", load_s);
   if (technique.name == "reference" && !stopToken().requested())
@@ -110,7 +120,7 @@ std::string formatQuantity(double value, const std::string& unit) {
 std::string formatResult(const BenchResult& result) {
   std::size_t width = 0;
   for (const Measurement& m : result.measurements) width = std::max(width, m.name.size());
-  std::string text = fmt::format("{} {}\n", result.scene, result.technique);
+  std::string text = fmt::format("{} {} on {}\n", result.scene, result.technique, result.device);
   for (const Measurement& m : result.measurements) {
     text += fmt::format("  {:<{}} {:>16}", m.name, width, formatQuantity(computeMedian(m.values), m.unit));
     if (m.values.size() > 1) text += fmt::format("  +- {:.1f} %", 100 * computeSpread(m.values));
@@ -127,7 +137,10 @@ Json toJson(const BenchResult& result) {
                             {"median", computeMedian(measurement.values)},
                             {"spread", computeSpread(measurement.values)},
                             {"values", measurement.values}});
-  return {{"scene", result.scene}, {"technique", result.technique}, {"measurements", measurements}};
+  return {{"scene", result.scene},
+          {"technique", result.technique},
+          {"device", result.device},
+          {"measurements", measurements}};
 }
 
 int threadCount(const BenchOptions& options) {
@@ -149,11 +162,25 @@ Json describeRun(const BenchOptions& options) {
           {"set", technique.parameters}};
 }
 
-std::vector<const Technique*> chooseTechniques(const std::string& name) {
+/// The one that was named, or all that have a use for the device.
+std::vector<const Technique*> chooseTechniques(const std::string& name, const std::string& device) {
   if (!name.empty()) return {&findTechnique(name)};
   std::vector<const Technique*> chosen;
-  for (const Technique& technique : techniques()) chosen.push_back(&technique);
+  for (const Technique& technique : techniques())
+    if (takesDevice(technique, device)) chosen.push_back(&technique);
   return chosen;
+}
+
+/// Nothing where technique and device were left to us and the machine has no device for the technique.
+std::optional<BenchResult> benchIfPossible(const std::string& scene, const Technique& technique,
+                                           const BenchOptions& options) {
+  try {
+    return benchScene(scene, technique, options);
+  } catch (const DeviceError& error) {
+    if (!options.only_technique.empty() || options.technique.device != "auto") throw;
+    writeStderr(fmt::format("warning: {} is left out: {}", technique.name, error.what()));
+    return std::nullopt;
+  }
 }
 
 ExitCode runBench(BenchOptions options) {
@@ -164,13 +191,14 @@ ExitCode runBench(BenchOptions options) {
     writeStdout(fmt::format("nephroid {}, {}, {} threads, median and half range of {}\n", version(), readCpuModel(),
                             threadCount(options), options.repeats));
   for (const std::string& scene : options.scenes) {
-    for (const Technique* technique : chooseTechniques(options.only_technique)) {
-      const BenchResult result = benchScene(scene, *technique, options);
+    for (const Technique* technique : chooseTechniques(options.only_technique, options.technique.device)) {
+      const std::optional<BenchResult> result = benchIfPossible(scene, *technique, options);
       if (stopToken().requested()) break;
+      if (!result) continue;
       if (options.json)
-        run["results"].push_back(toJson(result));
+        run["results"].push_back(toJson(*result));
       else
-        writeStdout(formatResult(result));
+        writeStdout(formatResult(*result));
     }
   }
   if (options.json) writeStdout(run.dump(2) + "\n");

@@ -20,6 +20,7 @@ struct Measurement {
 struct BenchResult {
   std::string scene, technique;
   std::vector<Measurement> measurements;
+  std::string device;  ///< what computed: "cpu" or a device's name
 };
 
 /// Light tracing against plain rays (bench_light_tracing.cpp); empty where no light reaches anything that bends it.

@@ -38,7 +38,7 @@ struct RenderOptions {
   SceneOptions scene;
   TechniqueOptions technique;
   PictureOptions picture;
-  std::string camera, output, frames, device = "auto";
+  std::string camera, output, frames;
   std::string aov = "beauty";
   float fps = 24;
   bool stats = false, verbose = false, json = false;
@@ -69,11 +69,6 @@ std::optional<FrameRange> parseFrames(const std::string& text) {
   return FrameRange{static_cast<int>(first), static_cast<int>(last)};
 }
 
-void checkDevice(const std::string& device) {
-  if (device == "auto" || device == "cpu") return;
-  throw DeviceError(fmt::format("--device {}: no Vulkan device support in this build; use --device cpu", device));
-}
-
 std::string frameName(const std::string& output, int frame) {
   const std::filesystem::path path(output);
   return (path.parent_path() / fmt::format("{}_{:04}{}", path.stem().string(), frame, path.extension().string()))
@@ -85,7 +80,6 @@ std::map<std::string, std::string> describeRun(const RenderOptions& options, flo
   facts["time"] = fmt::format("{}", time_s);
   facts["version"] = std::string(version());
   facts["camera"] = options.camera.empty() ? "0" : options.camera;
-  facts["device"] = "cpu";
   return facts;
 }
 
@@ -166,7 +160,6 @@ double estimateMemory(const RenderSettings& settings) {
 
 ExitCode runRender(const RenderOptions& options) {
   if (options.output.empty()) throw UsageError("render: no output given; add -o picture.png or -o picture.exr");
-  checkDevice(options.device);
   RenderSettings settings = makeSettings(options.technique);
   settings.layers = parseLayerList(options.aov);
   const std::optional<FrameRange> frames = parseFrames(options.frames);
@@ -233,9 +226,6 @@ Command addRenderCommand(CLI::App& root) {
   addOutputOptions(*app, *options);
   addTechniqueOptions(*app, options->technique, options->technique.name, options->technique.name);
   addAnimationOptions(*app, *options);
-  addValue(*app, "--device", options->device, "DEVICE",
-           {"What computes; this build has no Vulkan support, so auto is cpu.", "auto", "auto|cpu|N", ""})
-      ->group("Technique");
   return {app, [app, options] {
             if (!options->scene.state.empty()) applyStateFile(*app, options->scene.state);
             return runRender(*options);

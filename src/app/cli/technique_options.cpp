@@ -25,6 +25,10 @@ void addTechniqueOptions(CLI::App& app, TechniqueOptions& options, std::string& 
            {"How to draw; 'nephroid techniques' describes each.", default_name, joinTechniqueNames(), ""});
   addList(app, "--set", options.parameters, "KEY=VALUE",
           {"A parameter of the technique; 'nephroid techniques' lists them.", "none", "", ""});
+  addValue(app, "--device", options.device, "DEVICE",
+           {"What computes: auto is the best Vulkan device where the technique needs one, else the CPU; cpu uses no "
+            "Vulkan; N is the number of a Vulkan device, from 0.",
+            "auto", "auto|cpu|N", ""});
   app.option_defaults()->group("Budget");
   app.add_option_function<std::string>(
          "--size", [&options](const std::string& text) { options.size = parseSize("--size", text); },
@@ -57,6 +61,8 @@ RenderSettings makeSettings(const TechniqueOptions& options) {
   settings.seconds = options.seconds;
   settings.seed = options.seed;
   settings.threads = options.threads;
+  settings.device = options.device;
+  checkDevice(findTechnique(options.name), options.device);
   settings.params = ParamSet(findTechnique(options.name).params);
   for (const std::string& parameter : options.parameters) {
     const std::size_t equals = parameter.find('=');

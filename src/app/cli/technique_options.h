@@ -18,6 +18,7 @@ struct TechniqueOptions {
   double seconds = 0;
   std::uint64_t seed = 0;
   int threads = 0;
+  std::string device = "auto";
   std::vector<std::string> parameters;  ///< "key=value"
 };
 
@@ -27,7 +28,7 @@ struct TechniqueOptions {
 void addTechniqueOptions(CLI::App& app, TechniqueOptions& options, std::string& name, const std::string& default_name);
 
 /// Everything but the layers.
-/// @throws UsageError for an unknown technique, parameter or value
+/// @throws UsageError for an unknown technique, parameter or value, or a device that the technique does not take
 RenderSettings makeSettings(const TechniqueOptions& options);
 
 }  // namespace nephroid::cli

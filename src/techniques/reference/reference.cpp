@@ -14,6 +14,7 @@
 #include "techniques/reference/geometry_layers.h"
 #include "techniques/reference/path_tracer.h"
 #include "techniques/reference/photon_batch.h"
+#include "techniques/settings.h"
 
 namespace nephroid {
 namespace {
@@ -78,8 +79,7 @@ class ReferenceRender {
     options.max_bounces = settings.params.getInt("max-bounces");
     options.light_tracing = settings.params.getString("caustic-estimator") == "light";
     if (const int bands = settings.params.getInt("bands"); bands > 0) options.spectral.bands = makeBands(bands);
-    // A 64-bit seed is folded; equal seeds give equal pictures, which is all that is promised.
-    options.seed = static_cast<std::uint32_t>(settings.seed ^ (settings.seed >> 32));
+    options.seed = foldSeed(settings.seed);
     return options;
   }
 
@@ -288,6 +288,7 @@ class ReferenceRender {
     result.stats.not_finite = not_finite_;
     auto& metadata = result.image.metadata;
     metadata["technique"] = "reference";
+    metadata["device"] = "cpu";
     metadata["seed"] = std::to_string(settings_.seed);
     metadata["samples"] = std::to_string(samples_done_);
     metadata["photons"] = std::to_string(photons_done_);
@@ -345,6 +346,7 @@ class ReferenceRender {
 
 RenderResult renderReference(const SceneData& scene, const Camera& camera, const RenderSettings& settings,
                              ProgressSink* progress, const StopToken* stop) {
+  checkDevice(findTechnique("reference"), settings.device);
   if (settings.width < 1 || settings.height < 1) throw UsageError("a picture has at least 1 × 1 pixels");
   RenderResult result;
   runWithThreads(settings.threads > 0 ? settings.threads : availableThreads(),
@@ -362,13 +364,7 @@ Technique makeReferenceTechnique() {
       "whose kernels shrink; the truth for all others";
   technique.source = "Kajiya 1986; Arvo 1986; Veach 1997; Knaus & Zwicker 2011";
   technique.params = {
-      {"specular-alpha",
-       kDefaultSpecularAlpha,
-       0.0,
-       1.0,
-       "",
-       "microfacet width below which a lobe counts as specular (an S event)",
-       {}},
+      makeSpecularAlphaParam(),
       {"max-bounces", 64, 1, 1024, "", "scattering events on a path before it is given up", {}},
       {"caustic-estimator",
        std::string("light"),

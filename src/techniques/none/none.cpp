@@ -1,0 +1,286 @@
+#include "techniques/none/none.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cctype>
+#include <chrono>
+#include <cstdlib>
+#include <filesystem>
+#include <limits>
+#include <memory>
+#include <optional>
+#include <string_view>
+
+#include "frame/frame.h"
+#include "gpu/device.h"
+#include "nephroid/error.h"
+#include "techniques/layers.h"
+#include "techniques/settings.h"
+
+namespace nephroid {
+namespace {
+
+/// Soft shadows and edges of few levels, in a fraction of a second on a GPU.
+constexpr std::uint64_t kDefaultSamples = 16;
+/// Six views of so many cells a side, of 4 bytes each, are still within the 128 MiB that lavapipe lets a buffer have.
+constexpr int kMaxShadowSize = 2048;
+/// Samples are numbered in 32 bits.
+constexpr std::uint64_t kMaxSamples = std::numeric_limits<std::uint32_t>::max();
+/// Between two reports of progress: frames may be much shorter.
+constexpr double kReportInterval_s = 0.1;
+
+constexpr std::array<std::string_view, 2> kSummedLayers{"direct", "emission"};
+constexpr std::array<std::string_view, 5> kGeometryLayers{"albedo", "normal", "position", "depth", "id"};
+
+template <std::size_t N>
+bool contains(const std::array<std::string_view, N>& names, std::string_view name) {
+  return std::find(names.begin(), names.end(), name) != names.end();
+}
+
+using Clock = std::chrono::steady_clock;
+double secondsSince(Clock::time_point start) { return std::chrono::duration<double>(Clock::now() - start).count(); }
+
+/// As the XDG base directory specification says; nothing where no home is known.
+std::optional<std::filesystem::path> findCacheFolder() {
+  // Relative paths are to be ignored, by that specification.
+  if (const char* cache = std::getenv("XDG_CACHE_HOME"); cache && std::filesystem::path(cache).is_absolute())
+    return std::filesystem::path(cache) / "nephroid";
+  if (const char* home = std::getenv("HOME"); home && std::filesystem::path(home).is_absolute())
+    return std::filesystem::path(home) / ".cache" / "nephroid";
+  return std::nullopt;
+}
+
+/// One file a device. Another version of its driver refuses the contents and writes its own over them.
+std::optional<std::filesystem::path> findPipelineCache(std::string_view device_name) {
+  const std::optional<std::filesystem::path> folder = findCacheFolder();
+  if (!folder) return std::nullopt;
+  std::string name;
+  for (const char c : device_name) {
+    const auto byte = static_cast<unsigned char>(c);
+    if (std::isalnum(byte))
+      name += static_cast<char>(std::tolower(byte));
+    else if (!name.empty() && name.back() != '-')
+      name += '-';
+  }
+  while (name.ends_with('-')) name.pop_back();
+  return *folder / fmt::format("pipelines-{}.bin", name);
+}
+
+/// The instance and the device of one render.
+class OpenDevice {
+ public:
+  explicit OpenDevice(const std::string& wanted)
+      : instance_({.validation = wantsValidation()}),
+        infos_(gpu::listDevices(instance_)),
+        device_(instance_, infos_[gpu::chooseDevice(infos_, wanted).index]),
+        cache_(findPipelineCache(device_.name())) {
+    if (!cache_) return;
+    try {
+      device_.readPipelineCache(*cache_);
+    } catch (const Error&) {
+      // It only saves time.
+    }
+  }
+
+  gpu::Device& device() { return device_; }
+  void keepPipelines() const {
+    if (cache_) device_.writePipelineCache(*cache_);
+  }
+  /// @throws InternalError with the first thing that the validation layer said, if it was asked to look
+  void checkValidation() const {
+    const std::vector<std::string> messages = instance_.validationMessages();
+    if (!messages.empty())
+      throw InternalError(fmt::format("{} messages of Vulkan validation, first: {}", messages.size(), messages[0]));
+  }
+
+ private:
+  static bool wantsValidation() {
+    const char* value = std::getenv("NEPHROID_VALIDATION");
+    return value && std::string_view(value) == "1";
+  }
+
+  gpu::Instance instance_;
+  std::vector<gpu::DeviceInfo> infos_;
+  gpu::Device device_;
+  std::optional<std::filesystem::path> cache_;
+};
+
+/// @throws DeviceError if the device makes no images of that size
+void checkSize(const gpu::Device& device, const RenderSettings& settings) {
+  const std::uint32_t limit = device.limits().maxImageDimension2D;
+  if (static_cast<std::uint32_t>(std::max(settings.width, settings.height)) > limit)
+    throw DeviceError(fmt::format("a picture of {}x{} is too large for {}: its images have at most {} texels a side",
+                                  settings.width, settings.height, device.name(), limit));
+}
+
+FrameSettings makeFrameSettings(const RenderSettings& settings) {
+  return {.width = settings.width,
+          .height = settings.height,
+          .shadow_size = static_cast<std::uint32_t>(settings.params.getInt("shadow-size")),
+          .specular_alpha = settings.params.getFloat("specular-alpha"),
+          .seed = foldSeed(settings.seed)};
+}
+
+/// One progressive render.
+class NoneRender {
+ public:
+  NoneRender(gpu::Device& device, const SceneData& scene, const Camera& camera, const RenderSettings& settings,
+             ProgressSink* progress, const StopToken* stop, Clock::time_point start)
+      : device_(device),
+        settings_(settings),
+        progress_(progress),
+        stop_(stop),
+        start_(start),
+        frame_(device, scene, camera, makeFrameSettings(settings)) {
+    const bool sums = std::any_of(settings.layers.begin(), settings.layers.end(), [](const std::string& name) {
+      return name == "beauty" || contains(kSummedLayers, name);
+    });
+    const bool timed_only = settings.seconds > 0 && settings.samples == 0;
+    budget_ = settings.samples ? std::min(settings.samples, kMaxSamples) : timed_only ? kMaxSamples : kDefaultSamples;
+    if (!sums) budget_ = 0;
+    stages_.push_back({"build", secondsSince(start)});
+  }
+
+  RenderResult run() {
+    while (frame_.samples() < budget_ && !stopped() && !(timeIsUp() && frame_.samples() > 0)) {
+      const Clock::time_point begin = Clock::now();
+      frame_.render(frame_.samples());
+      addTime("whole", secondsSince(begin));
+      for (const gpu::PassTime& pass : frame_.passTimes()) addTime(pass.name, 1e-3 * pass.ms);
+      report();
+    }
+    RenderResult result;
+    result.interrupted = stopped();
+    if (result.interrupted && budget_ > 0 && frame_.samples() == 0)
+      throw InterruptedError("interrupted before there was anything to keep");
+    result.image.width = settings_.width, result.image.height = settings_.height;
+    for (const std::string& name : settings_.layers) result.image.layers.push_back({name, readLayer(name)});
+    describe(result);
+    return result;
+  }
+
+ private:
+  bool stopped() const { return stop_ && stop_->requested(); }
+  bool timeIsUp() const { return settings_.seconds > 0 && secondsSince(start_) >= settings_.seconds; }
+
+  /// A pass that runs several times in a frame, such as once a light, is one stage. "whole" is a frame by our own
+  /// clock: with what the CPU does for it, and where the device has no timestamps.
+  void addTime(const std::string& name, double seconds) {
+    auto found = std::find_if(stages_.begin(), stages_.end(), [&](const StageTime& s) { return s.name == name; });
+    if (found == stages_.end()) found = stages_.insert(stages_.end(), StageTime{name});
+    found->seconds += seconds;
+  }
+
+  void report() {
+    if (!progress_) return;
+    const bool last = frame_.samples() == budget_;
+    if (!last && reported_ && secondsSince(*reported_) < kReportInterval_s) return;
+    reported_ = Clock::now();
+    double fraction = static_cast<double>(frame_.samples()) / static_cast<double>(budget_);
+    if (settings_.seconds > 0) fraction = std::max(fraction, secondsSince(start_) / settings_.seconds);
+    progress_->update(std::min(fraction, 1.0), fmt::format("{} samples", frame_.samples()));
+  }
+
+  Image readLayer(const std::string& name) {
+    if (contains(kGeometryLayers, name)) return frame_.readGeometry(name);
+    if (contains(kSummedLayers, name)) return frame_.readSummed(name);
+    if (name != "beauty") return {settings_.width, settings_.height, findLayerInfo(name).channels};
+    Image sum = frame_.readSummed("direct");
+    const Image emission = frame_.readSummed("emission");
+    for (std::size_t i = 0; i < sum.pixels.size(); ++i) sum.pixels[i] += emission.pixels[i];
+    return sum;
+  }
+
+  void describe(RenderResult& result) {
+    // All but the first are sums over the frames.
+    for (std::size_t i = 1; i < stages_.size(); ++i) stages_[i].frames = frame_.samples();
+    result.stats.stages = stages_;
+    result.stats.samples = frame_.samples();
+    auto& metadata = result.image.metadata;
+    metadata["technique"] = "none";
+    metadata["device"] = device_.name();
+    metadata["seed"] = std::to_string(settings_.seed);
+    metadata["samples"] = std::to_string(frame_.samples());
+    for (const ParamSpec& spec : settings_.params.specs())
+      metadata["set." + spec.name] = settings_.params.toText(spec.name);
+    noteWhatIsMissing(result);
+  }
+
+  void noteWhatIsMissing(RenderResult& result) const {
+    const auto asked = [&](std::string_view name) {
+      return std::find(settings_.layers.begin(), settings_.layers.end(), name) != settings_.layers.end();
+    };
+    std::vector<std::string_view> missing, missing_from_beauty;
+    for (const LayerInfo& layer : layerInfos()) {
+      if (layer.name == "beauty" || contains(kSummedLayers, layer.name) || contains(kGeometryLayers, layer.name))
+        continue;
+      if (layer.summed) missing_from_beauty.push_back(layer.name);
+      if (asked(layer.name)) {
+        missing.push_back(layer.name);
+        result.notes.push_back(fmt::format("{} is black: technique none does not make it", layer.name));
+      }
+    }
+    auto& metadata = result.image.metadata;
+    if (!missing.empty()) metadata["not_made"] = fmt::format("{}", fmt::join(missing, ","));
+    if (!asked("beauty")) return;
+    metadata["not_in_beauty"] = fmt::format("{}", fmt::join(missing_from_beauty, ","));
+    result.notes.push_back(fmt::format("beauty is direct and emission alone: technique none makes no {}",
+                                       fmt::join(missing_from_beauty, ", ")));
+  }
+
+  gpu::Device& device_;
+  const RenderSettings& settings_;
+  ProgressSink* progress_;
+  const StopToken* stop_;
+  Clock::time_point start_;
+  RealtimeFrame frame_;
+  std::vector<StageTime> stages_;  ///< the first is "build"
+  std::uint64_t budget_ = 0;       ///< samples
+  std::optional<Clock::time_point> reported_;
+};
+
+RenderResult renderNone(const SceneData& scene, const Camera& camera, const RenderSettings& settings,
+                        ProgressSink* progress, const StopToken* stop) {
+  const Clock::time_point start = Clock::now();
+  checkDevice(findTechnique("none"), settings.device);
+  if (settings.width < 1 || settings.height < 1) throw UsageError("a picture has at least 1 × 1 pixels");
+  OpenDevice open(settings.device);
+  checkSize(open.device(), settings);
+  RenderResult result;
+  {
+    NoneRender render(open.device(), scene, camera, settings, progress, stop, start);
+    open.keepPipelines();
+    result = render.run();
+  }
+  for (std::string& limit : describeFrameLimits(scene)) result.notes.push_back(std::move(limit));
+  open.checkValidation();
+  return result;
+}
+
+}  // namespace
+
+Technique makeNoneTechnique() {
+  Technique technique;
+  technique.name = "none";
+  technique.text =
+      "the real-time frame without any caustic, on a Vulkan device: direct, emission and the geometry's layers; what "
+      "the real-time techniques add their caustics to";
+  technique.source = "Burns & Hunt 2013; Appel 1968";
+  technique.on_vulkan = true;
+  technique.params = {
+      makeSpecularAlphaParam(),
+      {"shadow-size",
+       static_cast<int>(FrameSettings{}.shadow_size),
+       64,
+       kMaxShadowSize,
+       "cells",
+       "along a side of each view from a light, in which shadows look for what casts them; bears on speed only",
+       {}},
+  };
+  technique.render = renderNone;
+  return technique;
+}
+
+}  // namespace nephroid

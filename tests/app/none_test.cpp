@@ -1,0 +1,68 @@
+// The real program with the technique `none`: what needs a Vulkan device.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <nlohmann/json.hpp>
+
+#include "app/process.h"
+#include "core/image/image_io.h"
+
+namespace nephroid::test {
+namespace {
+
+using ::testing::HasSubstr;
+
+/// The pipelines of tests are kept apart from the user's.
+ProcessResult runApart(const TempFolder& folder, const std::vector<std::string>& arguments) {
+  return runNephroid(arguments, {.environment = {"XDG_CACHE_HOME=" + folder.file("cache")}});
+}
+
+TEST(NoneTechnique, DrawsABuiltInScene) {
+  const TempFolder folder;
+  const ProcessResult result = runApart(folder, {"render", "builtin:ring", "--technique", "none", "--size", "64x48",
+                                                 "-o", folder.file("x.exr"), "--aov", "beauty,caustic", "--verbose"});
+  ASSERT_EQ(result.exit_code, 0) << result.err;
+  EXPECT_THAT(result.err, HasSubstr("note: caustic is black"));
+  const LayeredImage image = readExr(folder.file("x.exr"));
+  EXPECT_EQ(image.metadata.at("technique"), "none");
+  EXPECT_EQ(image.metadata.at("not_made"), "caustic");
+  EXPECT_NE(image.metadata.at("device"), "cpu");
+}
+
+TEST(NoneTechnique, DeviceThatIsNotThereIsExitCodeFour) {
+  const TempFolder folder;
+  const ProcessResult result = runApart(folder, {"render", "builtin:ring", "--technique", "none", "--size", "64x48",
+                                                 "-o", folder.file("x.exr"), "--device", "99"});
+  EXPECT_EQ(result.exit_code, 4);
+  EXPECT_THAT(result.err, HasSubstr("error: --device 99"));
+  EXPECT_EQ(countLines(result.err), 1) << result.err;
+}
+
+TEST(NoneTechnique, WithoutVulkanIsWrongUsage) {
+  const TempFolder folder;
+  const ProcessResult result = runApart(
+      folder, {"render", "builtin:ring", "--technique", "none", "-o", folder.file("x.exr"), "--device", "cpu"});
+  EXPECT_EQ(result.exit_code, 2);
+  EXPECT_THAT(result.err, HasSubstr("needs a Vulkan device"));
+  EXPECT_EQ(countLines(result.err), 1) << result.err;
+}
+
+TEST(NoneTechnique, BenchTellsTimeOfEachPassOfAFrame) {
+  const TempFolder folder;
+  const ProcessResult result = runApart(folder, {"bench", "builtin:ring", "--technique", "none", "--repeats", "2",
+                                                 "--warmup", "0", "--size", "16x12", "--samples", "2", "--json"});
+  ASSERT_EQ(result.exit_code, 0) << result.err;
+  const nlohmann::json json = nlohmann::json::parse(result.out)["results"][0];
+  EXPECT_NE(json["device"], "cpu");
+  bool found = false;
+  for (const auto& measurement : json["measurements"]) {
+    if (measurement["name"] != "direct / frame") continue;
+    found = true;
+    EXPECT_EQ(measurement["unit"], "ms");
+    EXPECT_EQ(measurement["values"].size(), 2U);
+  }
+  EXPECT_TRUE(found) << result.out;
+}
+
+}  // namespace
+}  // namespace nephroid::test
