@@ -13,6 +13,12 @@ bool overlap(const DirectionCap& a, const DirectionCap& b) {
   return dot(a.axis, b.axis) >= a.cos_angle * b.cos_angle - a.sin_angle * b.sin_angle - 1e-6F;
 }
 
+/// True only if `inner` lies wholly in `outer`.
+bool contains(const DirectionCap& outer, const DirectionCap& inner) {
+  if (outer.cos_angle > inner.cos_angle) return false;
+  return dot(outer.axis, inner.axis) >= outer.cos_angle * inner.cos_angle + outer.sin_angle * inner.sin_angle + 1e-6F;
+}
+
 /// A cap that holds the image of a block of cells: about the image of its centre, as wide as the farthest of eight
 /// points of its border, and a quarter more for the curvature between them.
 DirectionCap boundBlock(const MaskedGrid& grid, float one_minus_cos, int x, int y, int size) {
@@ -40,8 +46,9 @@ void markBlock(MaskedGrid& grid, float one_minus_cos, int x, int y, int size, co
   std::vector<DirectionCap> inside;
   for (const DirectionCap& cap : caps) {
     if (!split_always && !overlap(block, cap)) continue;
-    if (size == 1) {
-      grid.mark(x, y);
+    if (size == 1 || (!split_always && contains(cap, block))) {
+      for (int j = y; j < y + size; ++j)
+        for (int i = x; i < x + size; ++i) grid.mark(i, j);
       return;
     }
     inside.push_back(cap);

@@ -53,12 +53,12 @@ std::vector<std::string> techniqueWords() {
 }
 
 std::string formatCommandCases(const CLI::App& command) {
-  const std::string name = command.get_name();
+  const std::string& name = command.get_name();
   std::string text = formatCase(name, flagsOf(command));
   for (const CLI::Option* option : command.get_options()) {
     const std::vector<std::string> choices = choicesOf(*option);
     for (const std::string& flag : option->get_lnames())
-      if (!choices.empty()) text += formatCase(name + " --" + flag, choices);
+      if (!choices.empty()) text += formatCase(fmt::format("{} --{}", name, flag), choices);
     if (option->get_name(true).starts_with("SCENE")) text += formatCase(name + " SCENE", builtinNames("builtin:"));
   }
   return text;

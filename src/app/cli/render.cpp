@@ -127,8 +127,8 @@ Json toJson(const Outcome& outcome) {
 
 /// Renders and writes one picture.
 /// @throws Error
-Outcome renderPicture(const RenderOptions& options, RenderSettings settings, const std::string& output, float time_s,
-                      const std::string& title) {
+Outcome renderPicture(const RenderOptions& options, const RenderSettings& settings, const std::string& output,
+                      float time_s, const std::string& title) {
   const auto start = std::chrono::steady_clock::now();
   const SceneData scene = loadEditedScene(options.scene, time_s);
   const Camera camera = selectCamera(scene, options.camera.empty() ? "0" : options.camera);

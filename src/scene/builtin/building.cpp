@@ -32,6 +32,7 @@ std::vector<CurvePoint> makeArc(double curvature, double radius, double half_ang
 /// The straight back of the building behind the points of `front`.
 std::vector<CurvePoint> makeBack(const std::vector<CurvePoint>& front, double z) {
   std::vector<CurvePoint> curve;
+  curve.reserve(front.size());
   for (const CurvePoint& point : front) curve.push_back({{point.position.x, z}, {0, -1}});
   return curve;
 }
