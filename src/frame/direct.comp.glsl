@@ -20,6 +20,10 @@ layout(set = 0, binding = 11, rgba32ui) readonly uniform uimage2D surface_image;
 layout(set = 0, binding = 12, rgba32f) uniform image2D direct_image;  // sum over samples, W/m²/sr
 
 layout(push_constant, scalar) uniform Push { float specular_alpha; };
+// What no material of the scene has is not compiled: a device that runs all branches for all threads pays for each.
+layout(constant_id = 0) const bool kSceneHasMetal = true;
+layout(constant_id = 1) const bool kSceneHasGloss = true;
+layout(constant_id = 2) const bool kSceneHasConductors = true;
 
 struct Arriving {
   vec3 irradiance;  // on a surface that faces it, W/m²
@@ -67,9 +71,7 @@ bool isBlockedBy(uint list, Place place, Arriving light) {
     GridNode entry = nodes[node];
     node = entry.next;
     if (entry.instance == place.instance && entry.triangle == place.triangle) continue;
-    InstanceRecord instance = instances[entry.instance];
-    RayTriangle hit =
-        intersectPlaneOf(fetchTriangle(instance, triangleVertices(instance, entry.triangle)), place.start, light.dir);
+    RayTriangle hit = intersectPlaneOf(Triangle(entry.a, entry.b, entry.c), place.start, light.dir);
     if (isInside(hit) && hit.t > 0.0 && hit.t < light.distance * (1.0 - 1e-5)) return true;
   }
   return false;
@@ -102,6 +104,9 @@ SurfaceOptics opticsOf(MaterialRecord m) {
   s.conductor_ior = m.conductor_ior;
   s.conductor_k = m.conductor_k;
   s.has_conductor = (m.flags & kMaterialHasConductor) != 0u ? 1u : 0u;
+  if (!kSceneHasMetal) s.metallic = 0.0;
+  if (!kSceneHasGloss) s.gloss = 0.0;
+  if (!kSceneHasConductors) s.has_conductor = 0u;
   s.is_pane = (m.flags & kMaterialIsPane) != 0u ? 1u : 0u;
   s.is_solid = (m.flags & kMaterialIsSolid) != 0u ? 1u : 0u;
   return s;
@@ -114,7 +119,7 @@ void main() {
   uvec4 surface = imageLoad(surface_image, pixel);
   if (surface.x == 0u) return;
   SurfaceOptics optics = opticsOf(materials[instances[surface.x - 1u].material]);
-  bool has_interface = optics.alpha >= specular_alpha;
+  bool has_interface = optics.alpha >= specular_alpha && (kSceneHasMetal || kSceneHasGloss);
   if (baseWeight(optics) == 0.0 && !has_interface) return;
 
   vec4 position_error = imageLoad(position_image, pixel);
@@ -141,7 +146,9 @@ void main() {
   vec3 bitangent = cross(shading, tangent);
   vec3 wo_local = vec3(dot(wo, tangent), dot(wo, bitangent), dot(wo, shading));
   vec3 wi_local = vec3(dot(arriving.dir, tangent), dot(arriving.dir, bitangent), cos_light);
-  vec3 radiance = evaluateReceiver(optics, wo_local, wi_local, specular_alpha) * arriving.irradiance * cos_light;
+  vec3 brdf = kSceneHasMetal || kSceneHasGloss ? evaluateReceiver(optics, wo_local, wi_local, specular_alpha)
+                                               : evaluateBase(baseScale(optics), vec3(1.0), vec3(1.0));
+  vec3 radiance = brdf * arriving.irradiance * cos_light;
   vec4 sum = imageLoad(direct_image, pixel);
   imageStore(direct_image, pixel, sum + vec4(radiance, 0.0));
 }

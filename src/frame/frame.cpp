@@ -93,11 +93,6 @@ struct RealtimeFrame::Passes {
                  .bindings = withScene({kTable, kTexture, kStorage, kStorage}),
                  .push_bytes = sizeof(FilmPush)},
                 "surface"),
-        direct(device,
-               {.shader = shaders::direct_comp,
-                .bindings = withScene({kTable, kTable, kTable, kTable, kTable, kStorage, kStorage, kStorage}),
-                .push_bytes = sizeof(float)},
-               "direct"),
         light_grid(device,
                    {.shader = shaders::light_grid_comp,
                     .bindings = withScene({kTable, kTable, kTable, kTable, kTable}),
@@ -116,6 +111,17 @@ struct RealtimeFrame::Passes {
         nearest(device, {.filter = VK_FILTER_NEAREST}, "nearest") {}
 
   gpu::GraphicsPipeline visibility;
+  /// Once the scene is known.
+  void compileDirect(gpu::Device& device, const SceneBuffers::Receivers& receivers) {
+    direct = gpu::ComputePipeline(
+        device,
+        {.shader = shaders::direct_comp,
+         .bindings = withScene({kTable, kTable, kTable, kTable, kTable, kStorage, kStorage, kStorage}),
+         .push_bytes = sizeof(float),
+         .constants = {{0, receivers.metal}, {1, receivers.gloss}, {2, receivers.conductors}}},
+        "direct");
+  }
+
   gpu::ComputePipeline surface, direct, light_grid, emission, geometry_layer;
   gpu::Sampler nearest;
 };
@@ -153,6 +159,7 @@ RealtimeFrame::RealtimeFrame(gpu::Device& device, const SceneData& scene, const 
   buffers_ = std::make_unique<SceneBuffers>(device, recorder_, scene);
   uploadEnvironment();
   recorder_.submit();
+  passes_->compileDirect(device, buffers_->inspectReceivers(settings.specular_alpha));
   reset();
 }
 

@@ -83,6 +83,10 @@ struct GridNode {
   uint instance;
   uint triangle;
   uint next;  // kNoNode at the end
+  // Its corners, world: fetched through instance and indices they would be read from five places.
+  vec3 a;
+  vec3 b;
+  vec3 c;
 };
 
 NEPHROID_CONST uint kNoNode = 0xFFFFFFFFu;

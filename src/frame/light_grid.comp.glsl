@@ -30,10 +30,10 @@ const float kCutShare = 1e-6;
 /// Widening of triangles, in cells: the rounding of projected corners, of which cells know nothing.
 const float kMargin = 0.01;
 
-void addNode(uint list, uint triangle) {
+void addNode(uint list, uint triangle, Triangle t) {
   uint node = atomicAdd(node_count, 1u);
   if (node >= node_capacity) return;  // counted: the lists are built again with room for all
-  nodes[node] = GridNode(instance_index, triangle, atomicExchange(heads[list], node));
+  nodes[node] = GridNode(instance_index, triangle, atomicExchange(heads[list], node), t.a, t.b, t.c);
 }
 
 /// The part of a triangle before the light, projected: up to four corners, in cells.
@@ -103,13 +103,13 @@ void addToView(uint view_index, Triangle t, uint triangle, int size) {
   ivec2 extent = last - first + 1;
   uint cells = uint(size * size);
   if (extent.x * extent.y > kLargeCells) {
-    addNode(lights[0].view_count * cells, triangle);
+    addNode(lights[0].view_count * cells, triangle, t);
     return;
   }
   float orientation = orientationOf(o);
   for (int y = first.y; y <= last.y; ++y)
     for (int x = first.x; x <= last.x; ++x)
-      if (overlaps(o, orientation, vec2(x, y))) addNode(view_index * cells + uint(y * size + x), triangle);
+      if (overlaps(o, orientation, vec2(x, y))) addNode(view_index * cells + uint(y * size + x), triangle, t);
 }
 
 void main() {

@@ -99,17 +99,28 @@ SceneBuffers::SceneBuffers(gpu::Device& device, gpu::CommandRecorder& recorder, 
                       .is_pane = pane,
                       .bounds = bounds});
   }
-  std::vector<MaterialRecord> materials;
-  for (const Material& material : scene.materials) materials.push_back(describeMaterial(material));
+  for (const Material& material : scene.materials) material_records_.push_back(describeMaterial(material));
 
   constexpr VkBufferUsageFlags kTable = VK_BUFFER_USAGE_STORAGE_BUFFER_BIT;
   instances_ = gpu::makeBuffer<InstanceRecord>(device, recorder, instances, kTable, "instances");
-  materials_ = gpu::makeBuffer<MaterialRecord>(device, recorder, materials, kTable, "materials");
+  materials_ = gpu::makeBuffer<MaterialRecord>(device, recorder, material_records_, kTable, "materials");
   positions_ = gpu::makeBuffer<vec3>(device, recorder, tables.positions, kTable | VK_BUFFER_USAGE_VERTEX_BUFFER_BIT,
                                      "positions");
   normals_ = gpu::makeBuffer<vec3>(device, recorder, tables.normals, kTable, "normals");
   indices_ = gpu::makeBuffer<std::uint32_t>(device, recorder, tables.indices, kTable | VK_BUFFER_USAGE_INDEX_BUFFER_BIT,
                                             "indices");
+}
+
+SceneBuffers::Receivers SceneBuffers::inspectReceivers(float specular_alpha) const {
+  Receivers receivers;
+  for (const MaterialRecord& m : material_records_) {
+    const bool has_base = m.metallic < 1.0F && m.transmission < 1.0F, has_interface = m.alpha >= specular_alpha;
+    // Gloss takes from the base what it reflects, also where its own lobe is class S.
+    receivers.gloss = receivers.gloss || (m.gloss > 0.0F && m.metallic < 1.0F && (has_base || has_interface));
+    receivers.metal = receivers.metal || (m.metallic > 0.0F && (has_base || has_interface));
+    receivers.conductors = receivers.conductors || (m.flags & kMaterialHasConductor) != 0;
+  }
+  return receivers;
 }
 
 std::vector<gpu::Bound> SceneBuffers::bound() const {

@@ -15,6 +15,7 @@ static_assert(sizeof(InstanceRecord) == 64);
 static_assert(sizeof(MaterialRecord) == 88);
 static_assert(sizeof(ViewRecord) == 116);
 static_assert(sizeof(LightRecord) == 72);
+static_assert(sizeof(GridNode) == 48);
 
 /// Bindings 0 to 4 of every pass that reads the scene (frame/scene_access.glsl).
 std::vector<gpu::Binding> sceneBindings();
@@ -42,8 +43,16 @@ class SceneBuffers {
   };
   const std::vector<Draw>& draws() const { return draws_; }
 
+  /// What receivers there are: whether any has a class-D lobe of that kind.
+  struct Receivers {
+    bool metal = false, gloss = false, conductors = false;
+  };
+  /// @param specular_alpha  finer interfaces are class S
+  Receivers inspectReceivers(float specular_alpha) const;
+
  private:
   gpu::Buffer instances_, materials_, positions_, normals_, indices_;
+  std::vector<MaterialRecord> material_records_;
   std::vector<Draw> draws_;
 };
 
