@@ -118,9 +118,11 @@ void main() {
   if (pixel.x >= size.x || pixel.y >= size.y) return;
   uvec4 surface = imageLoad(surface_image, pixel);
   if (surface.x == 0u) return;
-  SurfaceOptics optics = opticsOf(materials[instances[surface.x - 1u].material]);
+  MaterialRecord material = materials[instances[surface.x - 1u].material];
+  SurfaceOptics optics = opticsOf(material);
+  bool has_base = material.metallic < 1.0 && material.transmission < 1.0;
   bool has_interface = optics.alpha >= specular_alpha && (kSceneHasMetal || kSceneHasGloss);
-  if (baseWeight(optics) == 0.0 && !has_interface) return;
+  if (!has_base && !has_interface) return;
 
   vec4 position_error = imageLoad(position_image, pixel);
   vec3 position = position_error.xyz;

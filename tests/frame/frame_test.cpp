@@ -128,6 +128,26 @@ TEST_F(FrameTest, RoughMetalAndVarnishAreReceiversToo) {
   }
 }
 
+TEST_F(FrameTest, MirrorsAndClearGlassAreNoReceivers) {
+  const Camera camera = makeCamera("eye", vec3(0, 4, 6), vec3(0, 0.5F, 0), 0.7F);
+  for (const Material& material : {test::makeMetal(vec3(0.9F)), test::makeGlass(1.5F)}) {
+    SceneData scene = test::makeBallScene(material, 24);
+    scene.lights.push_back(test::makePoint(vec3(2, 4, 3), vec3(60)));
+    RealtimeFrame frame(device(), scene, camera, {.width = 32, .height = 32});
+    const Image id = frame.readGeometry("id");
+    frame.render(0);
+    const Image direct = frame.readSummed("direct");
+    int seen = 0;
+    for (int y = 0; y < 32; ++y)
+      for (int x = 0; x < 32; ++x) {
+        if (id.at(x, y)[0] != 2.0F) continue;
+        ++seen;
+        EXPECT_EQ(direct.at(x, y)[0], 0.0F);
+      }
+    EXPECT_GT(seen, 50);
+  }
+}
+
 TEST_F(FrameTest, EmissiveMeshesLightReceivers) {
   constexpr int kSize = 32;
   SceneData scene = test::makeBallScene(test::makeGlass(1.5F), 24);

@@ -104,6 +104,8 @@ class EyePath {
   bool mayContribute(const PathClass& c) const {
     if (c.count() == 0) return true;
     if (!c.firstIsDiffuse()) return needs_.throughSpecular();
+    // Light that is met by chance counts in part for what was sampled towards lights, so it has to be looked for.
+    if (c.count() == 1 && needs_.direct) return true;
     return needs_.beyondDiffuse() || (!world_.options.light_tracing && (needs_.caustic || needs_.irradiance_caustic));
   }
   bool isWanted(const PathClass& c) const {

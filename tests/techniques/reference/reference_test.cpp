@@ -1,7 +1,9 @@
 // The reference against itself: two estimators that share little, layers that add up, a ledger that closes.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
+#include <memory>
 
 #include "nephroid/error.h"
 #include "support/tiny_scenes.h"
@@ -277,6 +279,27 @@ TEST(Reference, GeometryLayersSayWhatIsSeen) {
   EXPECT_NEAR(result.image.find("normal")->rgb(16, 16).y, 1.0F, 1e-3F);
   EXPECT_NEAR(result.image.find("albedo")->rgb(1, 1).x, 0.6F, 1e-6F);
   EXPECT_NEAR(result.image.find("position")->rgb(1, 1).y, 0.0F, 1e-6F);
+}
+
+TEST(Reference, LayersAskedForAloneAreThoseOfAWholeRender) {
+  // Even light of radiance 1 from all around, on a floor of albedo 0.6 and in its mirror image in a ball.
+  SceneData scene = test::makeBallScene(makeMetal(vec3(0.9F)), 64);
+  auto image = std::make_shared<Image>(8, 4, 3);
+  std::fill(image->pixels.begin(), image->pixels.end(), 1.0F);
+  scene.environment = Environment{image, 0.0F, 1.0F, "test"};
+  const std::vector<std::string> names{"emission", "direct", "specular", "indirect", "irradiance"};
+  const RenderResult whole = renderReference(scene, lookFromAbove(), makeSettings(16, 1024, 1 << 16, names));
+  for (const std::string& name : names) {
+    const RenderResult alone = renderReference(scene, lookFromAbove(), makeSettings(16, 1024, 1 << 16, {name}));
+    const double expected = test::meanOf(*whole.image.find(name)).x;
+    EXPECT_NEAR(test::meanOf(*alone.image.find(name)).x, expected, 0.01 * expected) << name;
+  }
+  SceneData floor;
+  addObject(floor, test::makeFloor(8.0), makeDiffuse(vec3(0.6F)));
+  floor.environment = scene.environment;
+  const Camera down = makeCamera("down", vec3(0, 3, 0), vec3(0), radians(40));
+  const RenderResult direct = renderReference(floor, down, makeSettings(8, 1024, 1, {"direct"}));
+  EXPECT_NEAR(test::meanOf(direct.image.layers[0].image).x, 0.6, 0.002);
 }
 
 TEST(Reference, StopBeforeAnythingIsDoneIsInterruptedError) {
