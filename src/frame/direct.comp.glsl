@@ -78,7 +78,7 @@ bool isBlockedBy(uint list, Place place, Arriving light) {
 }
 
 bool isBlocked(LightRecord light, Place place, Arriving arriving, vec3 position) {
-  uint cells = uint(light.map_size * light.map_size);
+  uint cells = uint(light.grid_size * light.grid_size);
   if (isBlockedBy(light.view_count * cells, place, arriving)) return true;
   uint face = light.view_count == 6u ? chooseFace(position - light.position) : 0u;
   ViewRecord view = light_views[face];
@@ -86,8 +86,8 @@ bool isBlocked(LightRecord light, Place place, Arriving arriving, vec3 position)
   float w = dot(view.clip_row_w, p);
   if (w <= 0.0) return false;
   vec2 ndc = vec2(dot(view.clip_row_x, p), dot(view.clip_row_y, p)) / w;
-  vec2 cell = clamp(floor((ndc * 0.5 + 0.5) * light.map_size), vec2(0.0), vec2(light.map_size - 1.0));
-  return isBlockedBy(face * cells + uint(cell.y * light.map_size + cell.x), place, arriving);
+  vec2 cell = clamp(floor((ndc * 0.5 + 0.5) * light.grid_size), vec2(0.0), vec2(light.grid_size - 1.0));
+  return isBlockedBy(face * cells + uint(cell.y * light.grid_size + cell.x), place, arriving);
 }
 
 SurfaceOptics opticsOf(MaterialRecord m) {
@@ -127,8 +127,7 @@ void main() {
   vec4 position_error = imageLoad(position_image, pixel);
   vec3 position = position_error.xyz;
   vec3 geometric = unpackUnit(surface.z), shading = unpackUnit(surface.w);
-  ViewRecord eye = eye_views[0];
-  vec3 wo = eye.is_orthographic != 0u ? -eye.forward : normalize(eye.eye - position);
+  vec3 wo = dirToEye(eye_views[0], position);
   if (dot(wo, geometric) < 0.0) {
     geometric = -geometric;
     shading = -shading;

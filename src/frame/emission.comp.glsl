@@ -20,11 +20,6 @@ layout(push_constant, scalar) uniform Push {
 
 const float kPi = 3.14159265358979;
 
-vec3 rayThrough(ViewRecord view, vec2 film) {
-  if (view.is_orthographic != 0u) return view.forward;
-  return normalize(view.forward + film.x * view.right - film.y * view.up);
-}
-
 vec3 environmentFrom(vec3 dir) {
   if (environment_scale == 0.0) return vec3(0.0);
   float x = dir.x * cos_rotation - dir.z * sin_rotation;
@@ -42,12 +37,11 @@ void main() {
   uvec4 surface = imageLoad(surface_image, pixel);
   vec3 radiance = vec3(0.0);
   if (surface.x == 0u) {
-    radiance = environmentFrom(rayThrough(view, (vec2(pixel) + film_offset) / vec2(size) * 2.0 - 1.0));
+    radiance = environmentFrom(rayThrough(view, (vec2(pixel) + film_offset) / vec2(size) * 2.0 - 1.0).dir);
   } else {
     MaterialRecord material = materials[instances[surface.x - 1u].material];
     vec3 position = imageLoad(position_image, pixel).xyz;
-    vec3 to_eye = view.is_orthographic != 0u ? -view.forward : view.eye - position;
-    bool front = dot(to_eye, unpackUnit(surface.z)) > 0.0;
+    bool front = dot(dirToEye(view, position), unpackUnit(surface.z)) > 0.0;
     if (front || (material.flags & kMaterialDoubleSided) != 0u) radiance = material.emission;
   }
   if (radiance == vec3(0.0)) return;

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstring>
@@ -268,7 +269,8 @@ void RealtimeFrame::prepareLight(std::size_t index, std::uint32_t sample) {
     // Small triangles lie in one cell or two of one view; if there are more, the first build tells.
     std::uint32_t triangles = 0;
     for (const SceneBuffers::Draw& draw : buffers_->draws()) triangles += draw.index_count / 3;
-    grid.node_capacity = 3 * triangles + 1024;
+    const std::uint32_t most = device_.limits().maxStorageBufferRange / sizeof(GridNode);
+    grid.node_capacity = std::min(3 * triangles + 1024, most);
   }
   for (;;) {
     if (!grid.nodes.valid())
@@ -276,7 +278,9 @@ void RealtimeFrame::prepareLight(std::size_t index, std::uint32_t sample) {
     buildGrid(grid, *view);
     const std::uint32_t nodes = gpu::readBackAs<std::uint32_t>(device_, grid.counter)[0];
     if (nodes <= grid.node_capacity) break;
-    grid.node_capacity = nodes + nodes / 4;
+    // As many again will do if the light stays, and nearly so many if it moves.
+    const std::uint32_t most = device_.limits().maxStorageBufferRange / sizeof(GridNode);
+    grid.node_capacity = std::max(nodes, std::min(nodes + nodes / 4, most));
     grid.nodes = gpu::Buffer();
   }
   grid.built = !view->varies;

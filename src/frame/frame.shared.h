@@ -20,7 +20,6 @@ struct InstanceRecord {
 
 NEPHROID_CONST uint kInstanceMirrored = 1u;    // the winding is reversed in world space
 NEPHROID_CONST uint kInstanceHasNormals = 2u;  // else flat
-NEPHROID_CONST uint kInstanceIsPane = 4u;      // smooth thin-walled transmission: light goes straight through
 
 /// A material without its textures; see SurfaceOptics for the terms.
 struct MaterialRecord {
@@ -67,7 +66,7 @@ struct LightRecord {
   vec3 normal;      // of the surface that the point lies on: the value is then times the cosine to it
   uint surface;     // kSurface…
   uint view_count;  // 6: a cube of views along ±x, ±y, ±z; 1
-  float map_size;   // cells along a side of each view
+  float grid_size;  // cells along a side of each view
 };
 
 NEPHROID_CONST uint kLightPoint = 0u;

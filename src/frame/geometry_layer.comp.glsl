@@ -26,9 +26,8 @@ void main() {
   } else if (kind == 0u) {
     value = materials[instances[surface.x - 1u].material].base;
   } else if (kind == 1u) {
-    vec3 to_eye = view.is_orthographic != 0u ? -view.forward : view.eye - position;
     vec3 shading = unpackUnit(surface.w);
-    value = dot(to_eye, unpackUnit(surface.z)) > 0.0 ? shading : -shading;
+    value = dot(dirToEye(view, position), unpackUnit(surface.z)) > 0.0 ? shading : -shading;
   } else if (kind == 2u) {
     value = position;
   } else if (kind == 3u) {

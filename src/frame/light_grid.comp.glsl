@@ -118,5 +118,5 @@ void main() {
   InstanceRecord instance = instances[instance_index];
   Triangle t = fetchTriangle(instance, triangleVertices(instance, triangle));
   for (uint v = 0u; v < lights[0].view_count; ++v)
-    if ((view_mask & (1u << v)) != 0u) addToView(v, t, triangle, int(lights[0].map_size));
+    if ((view_mask & (1u << v)) != 0u) addToView(v, t, triangle, int(lights[0].grid_size));
 }

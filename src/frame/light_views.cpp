@@ -83,13 +83,13 @@ std::optional<LightView> LightViews::make(std::size_t index, std::uint32_t sampl
 
 void LightViews::addCube(LightView& view) const {
   view.light.view_count = 6;
-  view.light.map_size = static_cast<float>(grid_size_);
+  view.light.grid_size = static_cast<float>(grid_size_);
   for (int face = 0; face < 6; ++face) view.views.push_back(makeCubeView(view.light.position, face, bounds_));
 }
 
 void LightViews::addParallel(LightView& view) const {
   view.light.view_count = 1;
-  view.light.map_size = static_cast<float>(grid_size_);
+  view.light.grid_size = static_cast<float>(grid_size_);
   view.views.push_back(makeParallelView(view.light.direction, bounds_));
 }
 

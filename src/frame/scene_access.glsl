@@ -13,6 +13,23 @@ layout(scalar, set = 0, binding = 4) readonly buffer Indices { uint indices[]; }
 /// Rounding of an interpolated position, relative to the coordinates that it was computed from: 16 ulp.
 const float kPositionErrorScale = 1.0 / 524288.0;
 
+struct Ray {
+  vec3 origin;
+  vec3 dir;  // unit
+};
+
+/// Through a place of a view's picture. @param film  in [-1, 1]², y down
+Ray rayThrough(ViewRecord view, vec2 film) {
+  vec3 across = film.x * view.right - film.y * view.up;
+  if (view.is_orthographic != 0u) return Ray(view.eye + across, view.forward);
+  return Ray(view.eye, normalize(view.forward + across));
+}
+
+/// Unit, from a point to where the view sees it from.
+vec3 dirToEye(ViewRecord view, vec3 position) {
+  return view.is_orthographic != 0u ? -view.forward : normalize(view.eye - position);
+}
+
 struct Triangle {
   vec3 a;  // world
   vec3 b;

@@ -84,10 +84,8 @@ SceneBuffers::SceneBuffers(gpu::Device& device, gpu::CommandRecorder& recorder, 
                           .first_vertex = tables.first_vertex[instance.mesh],
                           .first_index = tables.first_index[instance.mesh],
                           .material = mesh.material};
-    const bool pane = isPane(scene.materials[mesh.material]);
     if (glm::determinant(mat3(m)) < 0.0F) record.flags |= kInstanceMirrored;
     if (!mesh.normals.empty()) record.flags |= kInstanceHasNormals;
-    if (pane) record.flags |= kInstanceIsPane;
     instances.push_back(record);
     if (mesh.triangles.empty()) continue;
     Bounds bounds;
@@ -96,7 +94,6 @@ SceneBuffers::SceneBuffers(gpu::Device& device, gpu::CommandRecorder& recorder, 
                       .index_count = static_cast<std::uint32_t>(3 * mesh.triangles.size()),
                       .first_index = record.first_index,
                       .vertex_offset = static_cast<std::int32_t>(record.first_vertex),
-                      .is_pane = pane,
                       .bounds = bounds});
   }
   for (const Material& material : scene.materials) material_records_.push_back(describeMaterial(material));

@@ -38,7 +38,6 @@ class SceneBuffers {
     std::uint32_t instance = 0;
     std::uint32_t index_count = 0, first_index = 0;
     std::int32_t vertex_offset = 0;
-    bool is_pane = false;
     Bounds bounds;  ///< world
   };
   const std::vector<Draw>& draws() const { return draws_; }

@@ -19,14 +19,14 @@ layout(push_constant, scalar) uniform Push {
 
 /// The point of a triangle that is nearest to a ray which misses it. The rasteriser rounds corners to a fraction of a
 /// pixel, so it may show what the ray just passes by; at grazing angles the plane is met far from there.
-RayTriangle nearestToRay(Triangle t, vec3 origin, vec3 dir) {
+RayTriangle nearestToRay(Triangle t, Ray ray) {
   vec3 corners[3] = vec3[3](t.a, t.b, t.c);
   RayTriangle best = RayTriangle(0.0, 0.0, 0.0, true);
   float least = 3.4e38;
   for (int k = 0; k < 3; ++k) {
     // Across the ray, where only distance from it is left.
-    vec3 from = corners[k] - origin, edge = corners[(k + 1) % 3] - corners[k];
-    vec3 from_across = from - dot(from, dir) * dir, edge_across = edge - dot(edge, dir) * dir;
+    vec3 from = corners[k] - ray.origin, edge = corners[(k + 1) % 3] - corners[k];
+    vec3 from_across = from - dot(from, ray.dir) * ray.dir, edge_across = edge - dot(edge, ray.dir) * ray.dir;
     float squared = dot(edge_across, edge_across);
     float s = squared > 0.0 ? clamp(-dot(from_across, edge_across) / squared, 0.0, 1.0) : 0.0;
     vec3 off = from_across + s * edge_across;
@@ -49,22 +49,18 @@ void main() {
     imageStore(position_image, pixel, vec4(0.0));
     return;
   }
-  ViewRecord view = views[0];
-  vec2 film = (vec2(pixel) + film_offset) / vec2(size) * 2.0 - 1.0;
-  vec3 across = film.x * view.right - film.y * view.up;
-  vec3 origin = view.is_orthographic != 0u ? view.eye + across : view.eye;
-  vec3 dir = view.is_orthographic != 0u ? view.forward : normalize(view.forward + across);
+  Ray ray = rayThrough(views[0], (vec2(pixel) + film_offset) / vec2(size) * 2.0 - 1.0);
 
   InstanceRecord instance = instances[seen.x - 1u];
   uvec3 vertices = triangleVertices(instance, seen.y);
   Triangle triangle = fetchTriangle(instance, vertices);
-  RayTriangle hit = intersectPlaneOf(triangle, origin, dir);
-  if (!isInside(hit)) hit = nearestToRay(triangle, origin, dir);
+  RayTriangle hit = intersectPlaneOf(triangle, ray.origin, ray.dir);
+  if (!isInside(hit)) hit = nearestToRay(triangle, ray);
   float u = hit.u, v = hit.v;
   vec3 position = triangle.a + u * (triangle.b - triangle.a) + v * (triangle.c - triangle.a);
   vec3 area = areaNormal(instance, triangle);
   float doubled_area = length(area);
-  vec3 geometric = doubled_area > 0.0 ? area / doubled_area : -dir;
+  vec3 geometric = doubled_area > 0.0 ? area / doubled_area : -ray.dir;
   vec3 shading = geometric;
   if ((instance.flags & kInstanceHasNormals) != 0u) {
     vec3 interpolated = (1.0 - u - v) * normals[vertices.x] + u * normals[vertices.y] + v * normals[vertices.z];

@@ -50,7 +50,6 @@ namespace nephroid::gpu {
   X(CmdBindIndexBuffer)                 \
   X(CmdBindPipeline)                    \
   X(CmdBindVertexBuffers)               \
-  X(CmdBlitImage)                       \
   X(CmdClearColorImage)                 \
   X(CmdCopyBuffer)                      \
   X(CmdCopyBufferToImage)               \

@@ -54,8 +54,6 @@ AccessInfo describe(Access access) {
     case Access::kDepthTarget:
       return {kDepth, VK_ACCESS_2_DEPTH_STENCIL_ATTACHMENT_READ_BIT | VK_ACCESS_2_DEPTH_STENCIL_ATTACHMENT_WRITE_BIT,
               VK_IMAGE_LAYOUT_DEPTH_ATTACHMENT_OPTIMAL, true};
-    case Access::kDepthTest:
-      return {kDepth, VK_ACCESS_2_DEPTH_STENCIL_ATTACHMENT_READ_BIT, VK_IMAGE_LAYOUT_DEPTH_ATTACHMENT_OPTIMAL, false};
   }
   throw InternalError("an access that is not listed");
 }
@@ -139,12 +137,11 @@ void PassCommands::dispatch(std::uint32_t groups_x, std::uint32_t groups_y, std:
 }
 
 void PassCommands::beginRendering(const RenderTargets& targets) {
-  const bool multiview = targets.view_mask != 0;
   std::vector<VkRenderingAttachmentInfo> colors;
   VkExtent2D extent{};
   for (const ColorAttachment& color : targets.colors) {
     colors.push_back({.sType = VK_STRUCTURE_TYPE_RENDERING_ATTACHMENT_INFO,
-                      .imageView = multiview ? color.image.targetView() : color.image.layerView(targets.color_layer),
+                      .imageView = color.image.layerView(targets.color_layer),
                       .imageLayout = VK_IMAGE_LAYOUT_COLOR_ATTACHMENT_OPTIMAL,
                       .loadOp = color.clear ? VK_ATTACHMENT_LOAD_OP_CLEAR : VK_ATTACHMENT_LOAD_OP_LOAD,
                       .storeOp = VK_ATTACHMENT_STORE_OP_STORE,
@@ -153,7 +150,7 @@ void PassCommands::beginRendering(const RenderTargets& targets) {
   }
   VkRenderingAttachmentInfo depth{.sType = VK_STRUCTURE_TYPE_RENDERING_ATTACHMENT_INFO};
   if (targets.depth) {
-    depth.imageView = multiview ? targets.depth->targetView() : targets.depth->layerView(targets.depth_layer);
+    depth.imageView = targets.depth->layerView(targets.depth_layer);
     depth.imageLayout = VK_IMAGE_LAYOUT_DEPTH_ATTACHMENT_OPTIMAL;
     depth.loadOp = targets.clear_depth ? VK_ATTACHMENT_LOAD_OP_CLEAR : VK_ATTACHMENT_LOAD_OP_LOAD;
     depth.storeOp = VK_ATTACHMENT_STORE_OP_STORE;
@@ -163,7 +160,6 @@ void PassCommands::beginRendering(const RenderTargets& targets) {
   const VkRenderingInfo info{.sType = VK_STRUCTURE_TYPE_RENDERING_INFO,
                              .renderArea = {{0, 0}, extent},
                              .layerCount = 1,
-                             .viewMask = targets.view_mask,
                              .colorAttachmentCount = static_cast<std::uint32_t>(colors.size()),
                              .pColorAttachments = colors.data(),
                              .pDepthAttachment = targets.depth ? &depth : nullptr};
@@ -176,25 +172,6 @@ void PassCommands::beginRendering(const RenderTargets& targets) {
 }
 
 void PassCommands::endRendering() { device_.api().CmdEndRendering(commands_); }
-
-void PassCommands::finishDepth(const Image& depth) {
-  const AccessInfo info = describe(Access::kDepthTarget);
-  const VkImageMemoryBarrier2 barrier{
-      .sType = VK_STRUCTURE_TYPE_IMAGE_MEMORY_BARRIER_2,
-      .srcStageMask = info.stages,
-      .srcAccessMask = VK_ACCESS_2_DEPTH_STENCIL_ATTACHMENT_WRITE_BIT,
-      .dstStageMask = info.stages,
-      .dstAccessMask = info.access,
-      .oldLayout = info.layout,
-      .newLayout = info.layout,
-      .srcQueueFamilyIndex = VK_QUEUE_FAMILY_IGNORED,
-      .dstQueueFamilyIndex = VK_QUEUE_FAMILY_IGNORED,
-      .image = depth.handle(),
-      .subresourceRange = {depth.aspect(), 0, depth.desc().mips, 0, depth.desc().layers}};
-  const VkDependencyInfo dependency{
-      .sType = VK_STRUCTURE_TYPE_DEPENDENCY_INFO, .imageMemoryBarrierCount = 1, .pImageMemoryBarriers = &barrier};
-  device_.api().CmdPipelineBarrier2(commands_, &dependency);
-}
 
 void PassCommands::bindVertexBuffer(const Buffer& buffer, std::uint32_t slot) {
   const VkBuffer handle = buffer.handle();

@@ -26,7 +26,6 @@ enum class Access : std::uint8_t {
   kVertexFetch,    ///< vertex and index buffers
   kColorTarget,
   kDepthTarget,
-  kDepthTest,  ///< depth that is only compared with
 };
 
 /// A resource and what is done with it.
@@ -66,8 +65,7 @@ struct RenderTargets {
   const Image* depth = nullptr;
   std::uint32_t color_layer = 0, depth_layer = 0;  ///< drawn to, of images with several
   bool clear_depth = true;
-  float depth_value = 0.0F;     ///< the farthest: depths are drawn reversed, which keeps their digits
-  std::uint32_t view_mask = 0;  ///< not 0: all layers at once (multiview)
+  float depth_value = 0.0F;  ///< the farthest: depths are drawn reversed, which keeps their digits
 };
 
 /// What a pass records with. Valid inside its callback.
@@ -89,8 +87,6 @@ class PassCommands {
   /// Begins drawing into the targets: viewport and scissor cover them.
   void beginRendering(const RenderTargets& targets);
   void endRendering();
-  /// Between two renderings of a pass that use the same depth image for different views.
-  void finishDepth(const Image& depth);
   void bindVertexBuffer(const Buffer& buffer, std::uint32_t slot = 0);
   void bindIndexBuffer(const Buffer& buffer);  ///< 32-bit indices
   void draw(std::uint32_t vertices, std::uint32_t instances = 1);

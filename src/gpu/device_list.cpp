@@ -93,10 +93,9 @@ DeviceInfo describeDevice(const InstanceApi& api, VkPhysicalDevice device) {
                        [&](const VkExtensionProperties& e) { return std::strcmp(e.extensionName, name) == 0; });
   };
   info.ray_tracing_pipeline = has(VK_KHR_RAY_TRACING_PIPELINE_EXTENSION_NAME);
-  Features available, needed;
-  needed.requireNeeded();
+  Features available;
   api.GetPhysicalDeviceFeatures2(device, available.chain());
-  info.missing = available.lacking(needed);
+  info.missing = available.lacking();
   info.float_atomics = has(VK_EXT_SHADER_ATOMIC_FLOAT_EXTENSION_NAME) && available.floatAtomics();
   for (const char* extension : neededExtensions())
     if (!has(extension)) info.missing.emplace_back(extension);

@@ -188,7 +188,6 @@ GraphicsPipeline::GraphicsPipeline(Device& device, const GraphicsDesc& desc, std
                                                  .dynamicStateCount = 2,
                                                  .pDynamicStates = dynamic_states};
   const VkPipelineRenderingCreateInfo rendering{.sType = VK_STRUCTURE_TYPE_PIPELINE_RENDERING_CREATE_INFO,
-                                                .viewMask = desc.view_mask,
                                                 .colorAttachmentCount = static_cast<std::uint32_t>(formats.size()),
                                                 .pColorAttachmentFormats = formats.data(),
                                                 .depthAttachmentFormat = desc.depth};

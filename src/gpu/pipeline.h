@@ -91,7 +91,6 @@ struct GraphicsDesc {
   VkFormat depth = VK_FORMAT_UNDEFINED;
   VkCompareOp depth_compare = VK_COMPARE_OP_GREATER;  ///< depths are reversed: 1 near, 0 far
   bool depth_write = true;
-  std::uint32_t view_mask = 0;  ///< layers drawn at once (multiview); 0: one
 };
 
 class GraphicsPipeline : public Pipeline {

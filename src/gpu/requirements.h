@@ -17,8 +17,14 @@ class Features {
 
   /// Sets what a device must have; everything else is off.
   void requireNeeded();
-  /// Names of what is set in `needed` and not here.
-  std::vector<std::string> lacking(const Features& needed) const;
+  /// Names of what a device must have and is not set here.
+  std::vector<std::string> lacking();
+  bool floatAtomics() const {
+    return atomic_float_.shaderBufferFloat32AtomicAdd && atomic_float_.shaderImageFloat32AtomicAdd;
+  }
+  /// Asks for what is welcome and not needed. @param available  of the device
+  void takeWelcome(const Features& available);
+
   /// For asking and, on devices that have every extension that is spoken of, for creating.
   VkPhysicalDeviceFeatures2* chain() { return &core_; }
   /// For creating devices without the extensions that are only welcome.
@@ -26,15 +32,15 @@ class Features {
     vulkan13_.pNext = nullptr;
     return &core_;
   }
-  bool floatAtomics() const {
-    return atomic_float_.shaderBufferFloat32AtomicAdd && atomic_float_.shaderImageFloat32AtomicAdd;
-  }
-  /// Asks for what is welcome and not needed. @param available  of the device
-  void takeWelcome(const Features& available);
 
  private:
+  struct Needed {
+    VkBool32* flag;
+    const char* name;
+  };
+  std::vector<Needed> needed();
+
   VkPhysicalDeviceFeatures2 core_{};
-  VkPhysicalDeviceVulkan11Features vulkan11_{};
   VkPhysicalDeviceVulkan12Features vulkan12_{};
   VkPhysicalDeviceVulkan13Features vulkan13_{};
   VkPhysicalDeviceShaderAtomicFloatFeaturesEXT atomic_float_{};

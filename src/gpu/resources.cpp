@@ -54,6 +54,13 @@ std::uint32_t texelBytes(VkFormat format) {
 
 Buffer::Buffer(Device& device, VkDeviceSize size, VkBufferUsageFlags usage, MemoryIntent intent, std::string_view name)
     : device_(&device), size_(size) {
+  // What shaders see of a buffer is bounded, by 128 MiB on some devices.
+  if ((usage & VK_BUFFER_USAGE_STORAGE_BUFFER_BIT) != 0 && size > device.limits().maxStorageBufferRange)
+    throw ResourceError(
+        fmt::format("'{}' needs {:.1f} MiB and {} lets a buffer have {:.1f} MiB; use a smaller scene or "
+                    "another device",
+                    name, static_cast<double>(size) / (1 << 20), device.name(),
+                    static_cast<double>(device.limits().maxStorageBufferRange) / (1 << 20)));
   const VkBufferCreateInfo info{.sType = VK_STRUCTURE_TYPE_BUFFER_CREATE_INFO,
                                 .size = size,
                                 .usage = usage | VK_BUFFER_USAGE_TRANSFER_SRC_BIT | VK_BUFFER_USAGE_TRANSFER_DST_BIT,

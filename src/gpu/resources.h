@@ -86,7 +86,7 @@ class Image {
   VkImageAspectFlags aspect() const { return aspect_; }
   /// Of all layers and mips; for sampling.
   VkImageView view() const { return view_; }
-  /// Of the first mip, as an array of all layers; for rendering to and for storage.
+  /// Of the first mip, as an array of all layers; for storage.
   VkImageView targetView() const { return target_view_; }
   /// Of one layer of the first mip; for rendering to.
   VkImageView layerView(std::uint32_t layer) const { return layer_views_.empty() ? target_view_ : layer_views_[layer]; }

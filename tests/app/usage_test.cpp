@@ -116,13 +116,12 @@ TEST(Usage, DeviceMustBeOneThatTheTechniqueTakes) {
                    "reference computes on the CPU");
 }
 
+#ifdef NEPHROID_VULKAN  // the page lists the techniques of a whole build
 TEST(Manual, PageIsTheOneThatTheProgramPrints) {
-#ifndef NEPHROID_VULKAN
-  GTEST_SKIP() << "the page lists techniques that this build has not";
-#endif
   EXPECT_EQ(runNephroid({"manual"}).out, readText(NEPHROID_SOURCE_DIR "/docs/nephroid.1"))
       << "options changed: nephroid manual > docs/nephroid.1";
 }
+#endif
 
 TEST(Manual, HasEveryOptionOfEveryHelp) {
   const std::string page = readText(NEPHROID_SOURCE_DIR "/docs/nephroid.1");

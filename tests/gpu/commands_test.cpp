@@ -58,37 +58,42 @@ TEST_F(Commands, TimesEveryPassByName) {
   for (const PassTime& time : recorder.passTimes()) EXPECT_GE(time.ms, 0.0);
 }
 
-TEST_F(Commands, DrawsIntoEveryViewOfATarget) {
-  constexpr std::uint32_t kSize = 8, kViews = 6;
+TEST_F(Commands, DrawsIntoEachLayerOfATarget) {
+  constexpr std::uint32_t kSize = 8, kLayers = 6;
   const Image target(device(),
                      {.format = VK_FORMAT_R32G32B32A32_SFLOAT,
                       .width = kSize,
                       .height = kSize,
-                      .layers = kViews,
+                      .layers = kLayers,
                       .usage = VK_IMAGE_USAGE_COLOR_ATTACHMENT_BIT | VK_IMAGE_USAGE_SAMPLED_BIT,
                       .is_cube = true},
                      "target");
   const GraphicsPipeline pipeline(device(),
-                                  {.vertex = shaders::triangle_vert,
-                                   .fragment = shaders::triangle_frag,
-                                   .colors = {{VK_FORMAT_R32G32B32A32_SFLOAT}},
-                                   .view_mask = 0x3F},
+                                  {
+                                      .vertex = shaders::triangle_vert,
+                                      .fragment = shaders::triangle_frag,
+                                      .push_bytes = sizeof(float),
+                                      .colors = {{VK_FORMAT_R32G32B32A32_SFLOAT}},
+                                  },
                                   "triangle");
   CommandRecorder recorder(device());
   recorder.begin();
   recorder.pass("draw", {Use(target, Access::kColorTarget, true)}, [&](PassCommands& commands) {
-    commands.beginRendering({.colors = {{.image = target}}, .view_mask = 0x3F});
     commands.bind(pipeline);
-    commands.draw(3);
-    commands.endRendering();
+    for (std::uint32_t layer = 0; layer < kLayers; ++layer) {
+      commands.beginRendering({.colors = {{.image = target}}, .color_layer = layer});
+      commands.pushConstants(1.0F + static_cast<float>(layer));
+      commands.draw(3);
+      commands.endRendering();
+    }
   });
   recorder.submit();
   const std::vector<std::byte> bytes = readBack(device(), target);
   std::vector<float> texels(bytes.size() / sizeof(float));
   std::memcpy(texels.data(), bytes.data(), bytes.size());
-  for (std::uint32_t view = 0; view < kViews; ++view) {
-    const auto red = [&](std::uint32_t x, std::uint32_t y) { return texels[4 * ((view * kSize + y) * kSize + x)]; };
-    EXPECT_EQ(red(0, kSize - 1), 1.0F + static_cast<float>(view));  // row 0 is on top
+  for (std::uint32_t layer = 0; layer < kLayers; ++layer) {
+    const auto red = [&](std::uint32_t x, std::uint32_t y) { return texels[4 * ((layer * kSize + y) * kSize + x)]; };
+    EXPECT_EQ(red(0, kSize - 1), 1.0F + static_cast<float>(layer));  // row 0 is on top
     EXPECT_EQ(red(kSize - 1, 0), 0.0F);
   }
 }

@@ -1,4 +1,4 @@
 #version 460
-#extension GL_EXT_multiview : require
+layout(push_constant) uniform Push { float red; };
 layout(location = 0) out vec4 color;
-void main() { color = vec4(1.0 + float(gl_ViewIndex), 0.0, 0.0, 1.0); }
+void main() { color = vec4(red, 0.0, 0.0, 1.0); }
