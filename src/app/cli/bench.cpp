@@ -232,19 +232,17 @@ Command addBenchCommand(CLI::App& root) {
   const auto options = std::make_shared<BenchOptions>();
   const Json list = defaultList();
   applyListDefaults(options->technique, list);
-  CLI::App* app = root.add_subcommand("bench", "Measure speed and memory of each technique on each scene.");
-  app->footer(kExamples);
-  app->add_option("SCENES", options->scenes,
-                  describe({"Scenes, as for render.",
-                            fmt::format("{}", fmt::join(list["scenes"].get<std::vector<std::string>>(), " ")), "", ""}))
-      ->type_name("SCENE");
+  CLI::App* app = addCommand(root, "bench", "Measure speed and memory of each technique on each scene.", kExamples);
+  addArguments(*app, "SCENES", options->scenes, "SCENE",
+               {"Scenes, as for render.",
+                fmt::format("{}", fmt::join(list["scenes"].get<std::vector<std::string>>(), " ")), "", ""});
   addTechniqueOptions(*app, options->technique, options->only_technique, "all");
   addValue(*app, "--warmup", options->warmup, "N",
-           {"Renders before the measured ones.", "1", fmt::format("0 to {}", kMaxRepeats), ""})
-      ->check(checkNumber(0, kMaxRepeats));
+           {"Renders before the measured ones.", "1", fmt::format("0 to {}", kMaxRepeats), ""},
+           checkNumber(0, kMaxRepeats));
   addValue(*app, "--repeats", options->repeats, "N",
-           {"Measured renders per scene and technique.", "5", fmt::format("1 to {}", kMaxRepeats), ""})
-      ->check(checkNumber(1, kMaxRepeats));
+           {"Measured renders per scene and technique.", "5", fmt::format("1 to {}", kMaxRepeats), ""},
+           checkNumber(1, kMaxRepeats));
   addSwitch(*app, "--json", options->json, "Print JSON, with every value.");
   return {app, [options] { return runBench(*options); }};
 }

@@ -1,10 +1,10 @@
 // The subcommands of `nephroid`, one file each; main.cpp lists them.
 #pragma once
 
-#include <CLI/CLI.hpp>
-
 #include <functional>
+#include <string>
 
+#include "app/cli/options.h"
 #include "nephroid/error.h"
 
 namespace nephroid::cli {
@@ -14,6 +14,10 @@ struct Command {
   CLI::App* app = nullptr;
   std::function<ExitCode()> run;
 };
+
+/// A subcommand, which has no options yet. @param footer  below the options in its help; without one, the program's
+CLI::App* addCommand(CLI::App& root, const std::string& name, const std::string& description,
+                     const std::string& footer = "");
 
 Command addRenderCommand(CLI::App& root);
 Command addCompareCommand(CLI::App& root);

@@ -201,8 +201,7 @@ std::string describeMetrics() {
 
 Command addCompareCommand(CLI::App& root) {
   const auto options = std::make_shared<CompareOptions>();
-  CLI::App* app = root.add_subcommand("compare", "Tell how far a picture is from its reference.");
-  app->footer(describeMetrics());
+  CLI::App* app = addCommand(root, "compare", "Tell how far a picture is from its reference.", describeMetrics());
   addValue(*app, "IMAGE", options->image, "IMAGE", {"The picture: EXR, PNG, JPEG, WebP or HDR.", "", "", ""});
   addValue(*app, "REFERENCE", options->reference, "REFERENCE", {"What it should look like; same size.", "", "", ""});
   addValue(*app, "--layer", options->layer, "LAYERS",

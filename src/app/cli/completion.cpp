@@ -1,6 +1,7 @@
 // `nephroid completion bash`: completion of commands, options, choices, scenes and techniques.
 #include <fmt/format.h>
 
+#include <CLI/CLI.hpp>
 #include "app/cli/command.h"
 #include "app/cli/embedded.h"
 #include "app/cli/help.h"
@@ -89,9 +90,9 @@ std::string formatScript(const CLI::App& root) {
 
 Command addCompletionCommand(CLI::App& root) {
   const auto shell = std::make_shared<std::string>("bash");
-  CLI::App* app = root.add_subcommand("completion", "Print the shell's completion script.");
-  app->footer("Example:\n  source <(nephroid completion bash)");
-  addValue(*app, "SHELL", *shell, "SHELL", {"The shell.", "bash", "bash", ""})->check(checkChoice({"bash"}));
+  CLI::App* app = addCommand(root, "completion", "Print the shell's completion script.",
+                             "Example:\n  source <(nephroid completion bash)");
+  addValue(*app, "SHELL", *shell, "SHELL", {"The shell.", "bash", "bash", ""}, checkChoice({"bash"}));
   return {app, [&root, shell] {
             writeStdout(formatScript(root));
             return ExitCode::kDone;

@@ -101,9 +101,8 @@ Json devicesToJson(const DeviceSurvey& survey) {
 
 Command addDevicesCommand(CLI::App& root) {
   const auto options = std::make_shared<DevicesOptions>();
-  CLI::App* app =
-      root.add_subcommand("devices", "List the Vulkan devices, what each lacks, and which one --device auto takes.");
-  app->footer(kExamples);
+  CLI::App* app = addCommand(root, "devices",
+                             "List the Vulkan devices, what each lacks, and which one --device auto takes.", kExamples);
   addSwitch(*app, "--json", options->json, "Print JSON.");
   return {app, [options] { return runDevices(*options); }};
 }

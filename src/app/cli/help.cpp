@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <CLI/CLI.hpp>
 #include <algorithm>
 
 #include "app/cli/command.h"
@@ -112,10 +113,9 @@ bool answerHelp(const CLI::App& root, std::span<char* const> arguments) {
 }
 
 Command addHelpCommand(CLI::App& root) {
-  CLI::App* app = root.add_subcommand("help", "Explain a command, as its --help does.");
-  app->add_option_function<std::string>(
-         "COMMAND", [](const std::string&) {}, describe({"The command to explain.", "the whole program", "", ""}))
-      ->type_name("COMMAND");
+  CLI::App* app = addCommand(root, "help", "Explain a command, as its --help does.");
+  addParsed(*app, "COMMAND", [](const std::string&) {}, "COMMAND",
+            {"The command to explain.", "the whole program", "", ""});
   return {app, [] { return ExitCode::kDone; }};
 }
 

@@ -1,12 +1,12 @@
 // Help: one walk over the declared options makes `--help`, the manual page and the shell completion.
 #pragma once
 
-#include <CLI/CLI.hpp>
-
 #include <span>
 #include <string>
 #include <string_view>
 #include <vector>
+
+#include "app/cli/options.h"
 
 namespace nephroid::cli {
 

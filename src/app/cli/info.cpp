@@ -32,13 +32,12 @@ ExitCode runInfo(const InfoOptions& options) {
 
 Command addInfoCommand(CLI::App& root) {
   const auto options = std::make_shared<InfoOptions>();
-  CLI::App* app = root.add_subcommand(
-      "info", "Describe a scene: geometry, materials, what casts and what catches caustics, lights, warnings.");
-  app->footer(kExamples);
+  CLI::App* app = addCommand(
+      root, "info", "Describe a scene: geometry, materials, what casts and what catches caustics, lights, warnings.",
+      kExamples);
   addSceneOptions(*app, options->scene);
   addValue(*app, "--specular-alpha", options->specular_alpha, "ALPHA",
-           {"The widest microfacet lobe that still counts as specular.", "0.25", "0 to 1", ""})
-      ->check(checkNumber(0, 1));
+           {"The widest microfacet lobe that still counts as specular.", "0.25", "0 to 1", ""}, checkNumber(0, 1));
   addSwitch(*app, "--json", options->json, "Print JSON.");
   return {app, [app, options] {
             if (!options->scene.state.empty()) applyStateFile(*app, options->scene.state);

@@ -2,6 +2,7 @@
 // code.
 #include <fmt/format.h>
 
+#include <CLI/CLI.hpp>
 #include <new>
 #include <vector>
 

@@ -1,6 +1,7 @@
 // `nephroid manual`: the manual page, from the same declarations as --help.
 #include <fmt/format.h>
 
+#include <CLI/CLI.hpp>
 #include "app/cli/command.h"
 #include "app/cli/help.h"
 #include "app/cli/terminal.h"
@@ -82,7 +83,7 @@ std::string formatManual(const CLI::App& root) {
 }  // namespace
 
 Command addManualCommand(CLI::App& root) {
-  CLI::App* app = root.add_subcommand("manual", "Print the manual page (docs/nephroid.1), in roff.");
+  CLI::App* app = addCommand(root, "manual", "Print the manual page (docs/nephroid.1), in roff.");
   return {app, [&root] {
             writeStdout(formatManual(root));
             return ExitCode::kDone;

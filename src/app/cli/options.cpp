@@ -2,10 +2,14 @@
 
 #include <fmt/format.h>
 
+#include <CLI/CLI.hpp>
+#include <algorithm>
 #include <charconv>
 #include <cmath>
 #include <nlohmann/json.hpp>
+#include <optional>
 
+#include "app/cli/command.h"
 #include "core/file.h"
 #include "core/params.h"
 #include "nephroid/error.h"
@@ -75,46 +79,73 @@ std::string describe(const OptionText& text) {
   return facts.empty() ? text.text : fmt::format("{} [{}]", text.text, joinList(facts, "; "));
 }
 
-CLI::Option* addList(CLI::App& app, const std::string& flags, std::vector<std::string>& target,
-                     const std::string& value_name, const OptionText& text) {
+Check checkNumber(double lower, double upper) {
+  return [lower, upper](const std::string& text) {
+    double value = 0;
+    if (parseNumber(text, value) && value >= lower && value <= upper) return std::string();
+    return fmt::format("'{}' is not a number from {} to {}", text, lower, upper);
+  };
+}
+
+Check checkChoice(std::vector<std::string> choices) {
+  return [choices = std::move(choices)](const std::string& text) {
+    if (std::ranges::find(choices, text) != choices.end()) return std::string();
+    const std::string near = suggestName(text, choices);
+    return fmt::format("'{}' is not one of {}{}", text, joinList(choices, ", "),
+                       near.empty() ? "" : fmt::format("; did you mean '{}'?", near));
+  };
+}
+
+CLI::App* addCommand(CLI::App& root, const std::string& name, const std::string& description,
+                     const std::string& footer) {
+  CLI::App* app = root.add_subcommand(name, description);
+  if (!footer.empty()) app->footer(footer);
+  return app;
+}
+
+void beginGroup(CLI::App& app, const char* name) { app.option_defaults()->group(name); }
+
+void endGroup(CLI::App& app) { beginGroup(app, "Options"); }
+
+template <class T>
+void addValue(CLI::App& app, const std::string& flags, T& target, const std::string& value_name, const OptionText& text,
+              const Check& check) {
+  CLI::Option* option = app.add_option(flags, target, describe(text))->type_name(value_name);
+  if (check) option->check(check);
+}
+
+template void addValue(CLI::App&, const std::string&, std::string&, const std::string&, const OptionText&,
+                       const Check&);
+template void addValue(CLI::App&, const std::string&, int&, const std::string&, const OptionText&, const Check&);
+template void addValue(CLI::App&, const std::string&, float&, const std::string&, const OptionText&, const Check&);
+template void addValue(CLI::App&, const std::string&, double&, const std::string&, const OptionText&, const Check&);
+template void addValue(CLI::App&, const std::string&, std::optional<float>&, const std::string&, const OptionText&,
+                       const Check&);
+
+void addParsed(CLI::App& app, const std::string& flags, std::function<void(const std::string&)> parse,
+               const std::string& value_name, const OptionText& text) {
+  app.add_option_function<std::string>(flags, std::move(parse), describe(text))->type_name(value_name);
+}
+
+void addList(CLI::App& app, const std::string& flags, std::vector<std::string>& target, const std::string& value_name,
+             const OptionText& text) {
   // Without this, a repeated option would swallow the positional argument that follows it.
-  return app.add_option(flags, target, describe(text) + " May be repeated.")
-      ->type_name(value_name)
-      ->allow_extra_args(false);
+  app.add_option(flags, target, describe(text) + " May be repeated.")->type_name(value_name)->allow_extra_args(false);
 }
 
-CLI::Option* addSwitch(CLI::App& app, const std::string& flags, bool& target, const std::string& text) {
-  return app.add_flag(flags, target, text);
+void addArguments(CLI::App& app, const std::string& name, std::vector<std::string>& target,
+                  const std::string& value_name, const OptionText& text) {
+  app.add_option(name, target, describe(text))->type_name(value_name);
 }
 
-CLI::Option* addCount(CLI::App& app, const std::string& flags, std::uint64_t& target, const OptionText& text) {
+void addSwitch(CLI::App& app, const std::string& flags, bool& target, const std::string& text) {
+  app.add_flag(flags, target, text);
+}
+
+void addCount(CLI::App& app, const std::string& flags, std::uint64_t& target, const OptionText& text) {
   const std::string name = flags.substr(flags.find("--"));
-  return app
-      .add_option_function<std::string>(
-          flags, [&target, name](const std::string& value) { target = parseCount(name, value); }, describe(text))
-      ->type_name("N");
-}
-
-CLI::Validator checkNumber(double lower, double upper) {
-  return CLI::Validator(
-      [lower, upper](std::string& text) {
-        double value = 0;
-        if (parseNumber(text, value) && value >= lower && value <= upper) return std::string();
-        return fmt::format("'{}' is not a number from {} to {}", text, lower, upper);
-      },
-      "");
-}
-
-CLI::Validator checkChoice(std::vector<std::string> choices) {
-  return CLI::Validator(
-      [choices = std::move(choices)](std::string& text) {
-        for (const std::string& choice : choices)
-          if (choice == text) return std::string();
-        const std::string near = suggestName(text, choices);
-        return fmt::format("'{}' is not one of {}{}", text, joinList(choices, ", "),
-                           near.empty() ? "" : fmt::format("; did you mean '{}'?", near));
-      },
-      "");
+  addParsed(
+      app, flags, [&target, name](const std::string& value) { target = parseCount(name, value); }, "N", text);
 }
 
 std::uint64_t parseCount(std::string_view name, const std::string& text) {

@@ -1,12 +1,17 @@
 // Declaring options: every option is declared once, with its facts in one form, and checked where it is parsed.
 #pragma once
 
-#include <CLI/CLI.hpp>
-
 #include <cstdint>
+#include <functional>
 #include <string>
 #include <string_view>
 #include <vector>
+
+// CLI11 takes seconds to compile: the files that declare options do without its header.
+namespace CLI {
+class App;
+class Option;
+}  // namespace CLI
 
 namespace nephroid::cli {
 
@@ -21,27 +26,41 @@ struct OptionText {
 /// "TEXT [default: D; range: R; unit: U]", the one form of every help text.
 std::string describe(const OptionText& text);
 
-/// An option with a value of type T (string, int, float, double, uint64).
-template <class T>
-CLI::Option* addValue(CLI::App& app, const std::string& flags, T& target, const std::string& value_name,
-                      const OptionText& text) {
-  return app.add_option(flags, target, describe(text))->type_name(value_name);
-}
-
-/// An option that may be repeated; each time it takes one value.
-CLI::Option* addList(CLI::App& app, const std::string& flags, std::vector<std::string>& target,
-                     const std::string& value_name, const OptionText& text);
-
-CLI::Option* addSwitch(CLI::App& app, const std::string& flags, bool& target, const std::string& text);
-
-/// A count such as 64, 1e6, 500k or 2.5M.
-CLI::Option* addCount(CLI::App& app, const std::string& flags, std::uint64_t& target, const OptionText& text);
+/// What is wrong with a value, as the user wrote it; nothing if it will do.
+using Check = std::function<std::string(const std::string&)>;
 
 /// Accepts finite numbers in [lower, upper].
-CLI::Validator checkNumber(double lower, double upper);
+Check checkNumber(double lower, double upper);
 
 /// Accepts one of `choices`; otherwise names them, and the nearest.
-CLI::Validator checkChoice(std::vector<std::string> choices);
+Check checkChoice(std::vector<std::string> choices);
+
+/// Heading of the options that follow, in the help.
+void beginGroup(CLI::App& app, const char* name);
+void endGroup(CLI::App& app);
+
+/// An option, or an argument where `flags` have no dash, with a value of type T (string, int, float, double,
+/// optional<float>).
+template <class T>
+void addValue(CLI::App& app, const std::string& flags, T& target, const std::string& value_name, const OptionText& text,
+              const Check& check = {});
+
+/// An option whose value `parse` takes. @param parse  may throw UsageError
+void addParsed(CLI::App& app, const std::string& flags, std::function<void(const std::string&)> parse,
+               const std::string& value_name, const OptionText& text);
+
+/// An option that may be repeated; each time it takes one value.
+void addList(CLI::App& app, const std::string& flags, std::vector<std::string>& target, const std::string& value_name,
+             const OptionText& text);
+
+/// Arguments of any number.
+void addArguments(CLI::App& app, const std::string& name, std::vector<std::string>& target,
+                  const std::string& value_name, const OptionText& text);
+
+void addSwitch(CLI::App& app, const std::string& flags, bool& target, const std::string& text);
+
+/// A count such as 64, 1e6, 500k or 2.5M.
+void addCount(CLI::App& app, const std::string& flags, std::uint64_t& target, const OptionText& text);
 
 /// @param name  of the option, for messages
 /// @return      the count that `text` means: digits, a decimal number, with exponent or one of the suffixes k, M, G

@@ -54,8 +54,8 @@ void addPictureOptions(CLI::App& app, PictureOptions& options) {
            {"Of a PNG: radiance is multiplied by 2^EV; auto brings the average to middle grey.", "auto",
             "auto or -100 to 100", "EV"});
   addValue(app, "--tonemap", options.tone_map, "CURVE",
-           {"Of a PNG: none clips what is brighter than white, filmic rolls it off.", "none", "none|filmic", ""})
-      ->check(checkChoice({"none", "filmic"}));
+           {"Of a PNG: none clips what is brighter than white, filmic rolls it off.", "none", "none|filmic", ""},
+           checkChoice({"none", "filmic"}));
   addSwitch(app, "--half", options.half, "EXR with 16-bit instead of 32-bit floats.");
 }
 

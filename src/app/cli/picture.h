@@ -1,11 +1,10 @@
 // Writing a rendered picture: EXR as it is, PNG as people see it.
 #pragma once
 
-#include <CLI/CLI.hpp>
-
 #include <string>
 #include <vector>
 
+#include "app/cli/options.h"
 #include "core/image/image.h"
 
 namespace nephroid::cli {

@@ -186,7 +186,7 @@ ExitCode runRender(const RenderOptions& options) {
 }
 
 void addOutputOptions(CLI::App& app, RenderOptions& options) {
-  app.option_defaults()->group("Output");
+  beginGroup(app, "Output");
   addValue(app, "-o,--output", options.output, "FILE",
            {"Where the picture goes. .exr: every layer, linear; .png: sRGB, beauty or the only layer asked for; each "
             "further layer goes to FILE.LAYER.png.",
@@ -203,24 +203,23 @@ void addOutputOptions(CLI::App& app, RenderOptions& options) {
   addSwitch(app, "--verbose", options.verbose,
             "Print times, the photon ledger, notes and, where no caustic is seen, why, to stderr.");
   addSwitch(app, "--json", options.json, "Print the same as JSON to stdout.");
-  app.option_defaults()->group("Options");
+  endGroup(app);
 }
 
 void addAnimationOptions(CLI::App& app, RenderOptions& options) {
-  app.option_defaults()->group("Animation");
+  beginGroup(app, "Animation");
   addValue(app, "--frames", options.frames, "A..B",
            {"Draws frames A to B at time T + frame/F into FILE_0001 and so on.", "one picture", "0 to 9999", ""});
-  addValue(app, "--fps", options.fps, "F", {"Frames per second of --frames.", "24", "0.001 to 100000", "1/s"})
-      ->check(checkNumber(1e-3, 1e5));
-  app.option_defaults()->group("Options");
+  addValue(app, "--fps", options.fps, "F", {"Frames per second of --frames.", "24", "0.001 to 100000", "1/s"},
+           checkNumber(1e-3, 1e5));
+  endGroup(app);
 }
 
 }  // namespace
 
 Command addRenderCommand(CLI::App& root) {
   const auto options = std::make_shared<RenderOptions>();
-  CLI::App* app = root.add_subcommand("render", "Draw a picture of a scene, with its caustics.");
-  app->footer(kExamples);
+  CLI::App* app = addCommand(root, "render", "Draw a picture of a scene, with its caustics.", kExamples);
   addSceneOptions(*app, options->scene);
   addCameraOption(*app, options->camera);
   addOutputOptions(*app, *options);

@@ -22,30 +22,23 @@ void addEnvironmentOptions(CLI::App& app, SceneOptions& options) {
            {"Light from all around: a latitude-longitude picture (.exr, .hdr), or the analytic sky with "
             "sky[:turbidity=..,elevation=..,azimuth=..,irradiance=..].",
             "the scene's own", "", ""});
-  app.add_option_function<float>(
-         "--env-rotation",
-         [&options](float value) { options.environment_rotation_deg = value, options.environment_turned = true; },
-         describe({"Turns the environment about the vertical.", "0", "-360 to 360", "deg"}))
-      ->type_name("DEG")
-      ->check(checkNumber(-360, 360));
-  app.add_option_function<float>(
-         "--env-scale",
-         [&options](float value) { options.environment_scale = value, options.environment_turned = true; },
-         describe({"Multiplies the radiance of the environment.", "1", "0 to 1e9", ""}))
-      ->type_name("X")
-      ->check(checkNumber(0, 1e9));
+  addValue(app, "--env-rotation", options.environment_rotation_deg, "DEG",
+           {"Turns the environment about the vertical.", "0", "-360 to 360", "deg"}, checkNumber(-360, 360));
+  addValue(app, "--env-scale", options.environment_scale, "X",
+           {"Multiplies the radiance of the environment.", "1", "0 to 1e9", ""}, checkNumber(0, 1e9));
 }
 
 void applyEnvironment(SceneData& scene, const SceneOptions& options) {
+  const float rotation_deg = options.environment_rotation_deg.value_or(0.0F);
+  const float scale = options.environment_scale.value_or(1.0F);
   if (!options.environment.empty()) {
-    scene.environment =
-        loadEnvironment(options.environment, options.environment_rotation_deg, options.environment_scale);
-  } else if (options.environment_turned) {
+    scene.environment = loadEnvironment(options.environment, rotation_deg, scale);
+  } else if (options.environment_rotation_deg || options.environment_scale) {
     if (!scene.environment)
       throw UsageError(
           fmt::format("--env-rotation, --env-scale: {} has no environment; give one with --env", scene.name));
-    scene.environment->rotation_deg += options.environment_rotation_deg;
-    scene.environment->scale *= options.environment_scale;
+    scene.environment->rotation_deg += rotation_deg;
+    scene.environment->scale *= scale;
   }
 }
 
@@ -54,9 +47,9 @@ void applyEnvironment(SceneData& scene, const SceneOptions& options) {
 void addSceneOptions(CLI::App& app, SceneOptions& options) {
   addValue(app, "SCENE", options.scene, "SCENE",
            {"A .glb or .gltf file, or builtin:NAME[?key=value&..]; 'nephroid scenes' lists those.", "", "", ""});
-  app.option_defaults()->group("Scene");
-  addValue(app, "--time", options.time, "T", {"The moment of an animation.", "0", "0 to 1e6", "s"})
-      ->check(checkNumber(0, kMaxTime));
+  beginGroup(app, "Scene");
+  addValue(app, "--time", options.time, "T", {"The moment of an animation.", "0", "0 to 1e6", "s"},
+           checkNumber(0, kMaxTime));
   addList(
       app, "--light", options.lights, "EDIT",
       {"NAME:key=value,.. changes a light; sun:azimuth=A,elevation=E,irradiance=X, point:.. or spot:.. add one where "
@@ -74,22 +67,23 @@ void addSceneOptions(CLI::App& app, SceneOptions& options) {
            "none", "", ""});
   addEnvironmentOptions(app, options);
   addValue(app, "--floor", options.floor, "MODE",
-           {"A floor under the scene; auto: only where nothing catches light.", "auto", "auto|on|off", ""})
-      ->check(checkChoice({"auto", "on", "off"}));
+           {"A floor under the scene; auto: only where nothing catches light.", "auto", "auto|on|off", ""},
+           checkChoice({"auto", "on", "off"}));
   addValue(app, "--state", options.state, "FILE",
            {"A JSON object with any of these options under their long names, such as {\"samples\": 64, \"light\": "
             "[\"sun:elevation=30\"]}; the command line wins.",
             "none", "", ""});
-  app.option_defaults()->group("Options");
+  endGroup(app);
 }
 
 void addCameraOption(CLI::App& app, std::string& camera) {
+  beginGroup(app, "Scene");
   addValue(
       app, "--camera", camera, "CHOICE",
       {"NAME or INDEX of a camera of the scene, or eye=x,y,z:target=x,y,z:fov=DEG[:ortho=H] (m; fov is the vertical "
        "angle, ortho the height of a parallel view).",
-       "the first", "", ""})
-      ->group("Scene");
+       "the first", "", ""});
+  endGroup(app);
 }
 
 SceneData loadEditedScene(const SceneOptions& options, float time_s, bool print_warnings) {
@@ -110,9 +104,9 @@ std::map<std::string, std::string> describeSceneOptions(const SceneOptions& opti
   std::map<std::string, std::string> facts{
       {"scene", options.scene}, {"time", fmt::format("{}", options.time)}, {"floor", options.floor}};
   if (!options.environment.empty()) facts["env"] = options.environment;
-  if (options.environment_turned) {
-    facts["env-rotation"] = fmt::format("{}", options.environment_rotation_deg);
-    facts["env-scale"] = fmt::format("{}", options.environment_scale);
+  if (options.environment_rotation_deg || options.environment_scale) {
+    facts["env-rotation"] = fmt::format("{}", options.environment_rotation_deg.value_or(0.0F));
+    facts["env-scale"] = fmt::format("{}", options.environment_scale.value_or(1.0F));
   }
   const auto add_list = [&facts](const char* key, const std::vector<std::string>& edits) {
     if (!edits.empty()) facts[key] = fmt::format("{}", fmt::join(edits, " "));

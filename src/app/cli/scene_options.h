@@ -1,12 +1,12 @@
 // The options that name a scene and change it, shared by the subcommands that load one.
 #pragma once
 
-#include <CLI/CLI.hpp>
-
 #include <map>
+#include <optional>
 #include <string>
 #include <vector>
 
+#include "app/cli/options.h"
 #include "scene/load.h"
 #include "scene/scene_data.h"
 
@@ -17,9 +17,7 @@ struct SceneOptions {
   float time = 0;  ///< s
   std::string floor = "auto";
   std::string environment;
-  float environment_rotation_deg = 0;
-  float environment_scale = 1;
-  bool environment_turned = false;  ///< one of the two above was given
+  std::optional<float> environment_rotation_deg, environment_scale;
   std::vector<std::string> lights, objects, materials;
   std::string state;  ///< JSON file with further options
 };

@@ -58,8 +58,7 @@ ExitCode runScenes(const ScenesOptions& options) {
 
 Command addScenesCommand(CLI::App& root) {
   const auto options = std::make_shared<ScenesOptions>();
-  CLI::App* app = root.add_subcommand("scenes", "List the built-in scenes with their parameters.");
-  app->footer(kExamples);
+  CLI::App* app = addCommand(root, "scenes", "List the built-in scenes with their parameters.", kExamples);
   addValue(*app, "NAME", options->name, "NAME", {"Only this scene.", "all", "", ""});
   addSwitch(*app, "--json", options->json, "Print JSON.");
   return {app, [options] { return runScenes(*options); }};

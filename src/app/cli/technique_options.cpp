@@ -20,7 +20,7 @@ std::string describeBudget(std::uint64_t budget) {
 }  // namespace
 
 void addTechniqueOptions(CLI::App& app, TechniqueOptions& options, std::string& name, const std::string& default_name) {
-  app.option_defaults()->group("Technique");
+  beginGroup(app, "Technique");
   addValue(app, "--technique", name, "NAME",
            {"How to draw; 'nephroid techniques' describes each.", default_name, joinTechniqueNames(), ""});
   addList(app, "--set", options.parameters, "KEY=VALUE",
@@ -29,12 +29,10 @@ void addTechniqueOptions(CLI::App& app, TechniqueOptions& options, std::string& 
            {"What computes: auto is the best Vulkan device where the technique needs one, else the CPU; cpu uses no "
             "Vulkan; N is the number of a Vulkan device, from 0.",
             "auto", "auto|cpu|N", ""});
-  app.option_defaults()->group("Budget");
-  app.add_option_function<std::string>(
-         "--size", [&options](const std::string& text) { options.size = parseSize("--size", text); },
-         describe({"Size of the picture.", fmt::format("{}x{}", options.size.width, options.size.height),
-                   fmt::format("1x1 to {0}x{0}", kMaxSide), "px"}))
-      ->type_name("WxH");
+  beginGroup(app, "Budget");
+  addParsed(app, "--size", [&options](const std::string& text) { options.size = parseSize("--size", text); }, "WxH",
+            {"Size of the picture.", fmt::format("{}x{}", options.size.width, options.size.height),
+             fmt::format("1x1 to {0}x{0}", kMaxSide), "px"});
   addCount(app, "--photons", options.photons,
            {"Photons emitted, over all lights and bands; 500k, 2M and 1e6 are understood.",
             describeBudget(options.photons), "0 to 9e15", "photons"});
@@ -42,14 +40,14 @@ void addTechniqueOptions(CLI::App& app, TechniqueOptions& options, std::string& 
            {"Camera samples.", describeBudget(options.samples), "0 to 9e15", "per pixel"});
   addValue(
       app, "--seconds", options.seconds, "S",
-      {"Ends a progressive render after this time; the picture then varies between runs.", "none", "0.001 to 1e7", "s"})
-      ->check(checkNumber(1e-3, 1e7));
+      {"Ends a progressive render after this time; the picture then varies between runs.", "none", "0.001 to 1e7", "s"},
+      checkNumber(1e-3, 1e7));
   addCount(app, "--seed", options.seed,
            {"Of the random numbers: equal seeds give equal pixels.", "0", "0 to 9e15", ""});
   addValue(app, "--threads", options.threads, "N",
-           {"Threads; 0 is all cores. Their number does not change the picture.", "0", "0 to 4096", ""})
-      ->check(checkNumber(0, 4096));
-  app.option_defaults()->group("Options");
+           {"Threads; 0 is all cores. Their number does not change the picture.", "0", "0 to 4096", ""},
+           checkNumber(0, 4096));
+  endGroup(app);
 }
 
 RenderSettings makeSettings(const TechniqueOptions& options) {

@@ -1,8 +1,6 @@
 // The options that choose a technique and its budget, shared by `render` and `bench`.
 #pragma once
 
-#include <CLI/CLI.hpp>
-
 #include <string>
 #include <vector>
 

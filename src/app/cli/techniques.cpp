@@ -49,8 +49,8 @@ ExitCode runTechniques(const TechniquesOptions& options) {
 
 Command addTechniquesCommand(CLI::App& root) {
   const auto options = std::make_shared<TechniquesOptions>();
-  CLI::App* app = root.add_subcommand("techniques", "List the techniques with the parameters that --set takes.");
-  app->footer(kExamples);
+  CLI::App* app =
+      addCommand(root, "techniques", "List the techniques with the parameters that --set takes.", kExamples);
   addValue(*app, "NAME", options->name, "NAME", {"Only this technique.", "all", "", ""});
   addSwitch(*app, "--json", options->json, "Print JSON.");
   return {app, [options] { return runTechniques(*options); }};
