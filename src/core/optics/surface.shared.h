@@ -47,7 +47,8 @@ struct SurfaceOptics {
 /// @param cos_theta  of incidence, towards the side of ior_from; clamped to [0, 1]
 /// @return           in [0, 1]
 NEPHROID_FN float interfaceFresnel(SurfaceOptics s, float cos_theta) {
-  bool wanted = s.metallic < 1.0f && s.gloss > 0.0f;
+  // A GPU's quotient of equal indices need not be 1, and next to 1 a critical angle may be short of grazing incidence.
+  bool wanted = s.metallic < 1.0f && s.gloss > 0.0f && s.ior_from != s.ior_to;
   return wanted ? fresnelDielectric(cos_theta, s.ior_from / s.ior_to) : 0.0f;
 }
 
@@ -76,9 +77,10 @@ NEPHROID_FN vec3 interfaceReflectance(SurfaceOptics s, float cos_theta, float fr
 /// @return         per channel, in [0, 1]; R + T <= 1
 NEPHROID_FN vec3 interfaceTransmittance(SurfaceOptics s, float fresnel) {
   if (s.transmission == 0.0f || s.metallic == 1.0f) return vec3(0.0f);
+  // Beyond the critical angle there is no direction to transmit into, whatever the tint. A pane's own reflectance is a
+  // quotient, which on a GPU may then be a little less than 1.
+  if (fresnel >= 1.0f) return vec3(0.0f);
   float r = s.is_pane != 0u ? fresnelThinPane(fresnel) : fresnel;
-  // Beyond the critical angle there is no direction to transmit into, whatever the tint.
-  if (r >= 1.0f) return vec3(0.0f);
   return s.base * ((1.0f - s.metallic) * s.transmission) * (vec3(1.0f) - s.specular_tint * r);
 }
 
