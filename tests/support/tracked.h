@@ -247,6 +247,8 @@ inline vec3 operator*(vec3 a, vec3 b) { return {a.x * b.x, a.y * b.y, a.z * b.z}
 inline vec3 operator*(vec3 a, Number s) { return {a.x * s, a.y * s, a.z * s}; }
 inline vec3 operator*(Number s, vec3 a) { return {s * a.x, s * a.y, s * a.z}; }
 inline vec3 operator/(vec3 a, Number s) { return {a.x / s, a.y / s, a.z / s}; }
+inline vec3 operator/(vec3 a, vec3 b) { return {a.x / b.x, a.y / b.y, a.z / b.z}; }
+inline vec3& operator+=(vec3& a, vec3 b) { return a = a + b; }
 
 inline Number dot(vec2 a, vec2 b) { return a.x * b.x + a.y * b.y; }
 inline Number dot(vec3 a, vec3 b) { return a.x * b.x + a.y * b.y + a.z * b.z; }

@@ -3,6 +3,7 @@
 // of buffers.)
 #include "core/optics/photon.shared.h"
 #include "core/optics/ray_differential.shared.h"
+#include "core/optics/surface.shared.h"
 
 NEPHROID_NAMESPACE_BEGIN
 
@@ -15,6 +16,7 @@ struct LayoutOutput {
   PhotonBatch batch;
   Footprint footprint;
   NormalDifferential normal;
+  SurfaceOptics surface;
 };
 
 NEPHROID_FN LayoutOutput writeLayout(LayoutInput given) {
@@ -41,6 +43,20 @@ NEPHROID_FN LayoutOutput writeLayout(LayoutInput given) {
   result.footprint.axis_b = vec3(f + 25.0f, f + 26.0f, f + 27.0f);
   result.normal.dn_dx = vec3(f + 28.0f, f + 29.0f, f + 30.0f);
   result.normal.dn_dy = vec3(f + 31.0f, f + 32.0f, f + 33.0f);
+  result.surface.base = vec3(f + 34.0f, f + 35.0f, f + 36.0f);
+  result.surface.metallic = f + 37.0f;
+  result.surface.alpha = f + 38.0f;
+  result.surface.transmission = f + 39.0f;
+  result.surface.gloss = f + 40.0f;
+  result.surface.specular_tint = vec3(f + 41.0f, f + 42.0f, f + 43.0f);
+  result.surface.ior_from = f + 44.0f;
+  result.surface.ior_to = f + 45.0f;
+  result.surface.average_fresnel = f + 46.0f;
+  result.surface.conductor_ior = vec3(f + 47.0f, f + 48.0f, f + 49.0f);
+  result.surface.conductor_k = vec3(f + 50.0f, f + 51.0f, f + 52.0f);
+  result.surface.has_conductor = u + 53u;
+  result.surface.is_pane = u + 54u;
+  result.surface.is_solid = u + 55u;
   return result;
 }
 

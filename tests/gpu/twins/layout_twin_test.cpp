@@ -47,7 +47,7 @@ TEST_F(LayoutTwin, FieldsAreWhereTheDeviceWritesThem) {
   const std::vector<LayoutInput> inputs{{100.0F}, {1000.0F}};
   const auto outputs = runOnDevice<LayoutOutput>(device(), shaders::layout_comp, inputs);
   ASSERT_EQ(outputs.size(), inputs.size());
-  EXPECT_EQ(sizeof(LayoutOutput), 34 * sizeof(float));
+  EXPECT_EQ(sizeof(LayoutOutput), 56 * sizeof(float));
   for (std::size_t i = 0; i < inputs.size(); ++i) {
     SCOPED_TRACE(i);
     const auto* bytes = reinterpret_cast<const std::byte*>(outputs.data() + i);
@@ -76,6 +76,21 @@ TEST_F(LayoutTwin, FieldsAreWhereTheDeviceWritesThem) {
     base = offsetof(LayoutOutput, normal);
     NEPHROID_EXPECT_FIELD(reader, base, NormalDifferential, dn_dx);
     NEPHROID_EXPECT_FIELD(reader, base, NormalDifferential, dn_dy);
+    base = offsetof(LayoutOutput, surface);
+    NEPHROID_EXPECT_FIELD(reader, base, SurfaceOptics, base);
+    NEPHROID_EXPECT_FIELD(reader, base, SurfaceOptics, metallic);
+    NEPHROID_EXPECT_FIELD(reader, base, SurfaceOptics, alpha);
+    NEPHROID_EXPECT_FIELD(reader, base, SurfaceOptics, transmission);
+    NEPHROID_EXPECT_FIELD(reader, base, SurfaceOptics, gloss);
+    NEPHROID_EXPECT_FIELD(reader, base, SurfaceOptics, specular_tint);
+    NEPHROID_EXPECT_FIELD(reader, base, SurfaceOptics, ior_from);
+    NEPHROID_EXPECT_FIELD(reader, base, SurfaceOptics, ior_to);
+    NEPHROID_EXPECT_FIELD(reader, base, SurfaceOptics, average_fresnel);
+    NEPHROID_EXPECT_FIELD(reader, base, SurfaceOptics, conductor_ior);
+    NEPHROID_EXPECT_FIELD(reader, base, SurfaceOptics, conductor_k);
+    NEPHROID_EXPECT_FIELD(reader, base, SurfaceOptics, has_conductor);
+    NEPHROID_EXPECT_FIELD(reader, base, SurfaceOptics, is_pane);
+    NEPHROID_EXPECT_FIELD(reader, base, SurfaceOptics, is_solid);
   }
 }
 
