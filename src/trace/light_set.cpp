@@ -200,7 +200,7 @@ LightSet::Met LightSet::metSphere(vec3 vertex, const Ray& ray, float t_max, std:
   const vec3 from_vertex = light.position - vertex;
   const float sin2 = std::min(radius_squared / dot(from_vertex, from_vertex), 1.0F);
   const float one_minus_cos = sin2 / (1.0F + std::sqrt(1.0F - sin2));
-  return {intensityAlong(light, ray.dir) / (kPi * radius_squared),
+  return {intensityAlong(light, -ray.dir) / (kPi * radius_squared),
           probability_of_punctual_[which] / (2.0F * kPi * one_minus_cos)};
 }
 

@@ -103,6 +103,23 @@ TEST(LightSet, WhatIsMetHasTheDensityWithWhichItIsSampled) {
   EXPECT_GT(matched, 1900);
 }
 
+TEST(LightSet, ASpotWithASizeIsSeenFromWhereItShines) {
+  SceneData data = makeFloorScene();
+  Light spot = test::makePoint(vec3(0, 2, 0), vec3(8.0F), 0.1F);
+  spot.kind = LightKind::kSpot;
+  spot.direction = vec3(0, -1, 0);
+  data.lights.push_back(spot);
+  const Lit lit(std::move(data));
+  const auto seen = [&](vec3 eye, vec3 dir) {
+    float radiance = 0.0F;
+    lit.lights.visitSpheres(eye, Ray{eye, dir}, kInfinity,
+                            [&](const LightSet::Met& met) { radiance += met.radiance.x; });
+    return radiance;
+  };
+  EXPECT_NEAR(seen(vec3(0, 0.5F, 0), vec3(0, 1, 0)), 8.0F / (kPi * 0.01F), 1e-2F);
+  EXPECT_EQ(seen(vec3(0, 4, 0), vec3(0, -1, 0)), 0.0F);
+}
+
 TEST(EnvironmentMap, FollowsItsOrientation) {
   // One bright texel at u = 0.75, v = 0.5: towards +X. Turned by 90° about +Y it shines from −Z.
   auto image = std::make_shared<Image>(64, 33, 3, 0.0F);
