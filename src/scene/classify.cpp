@@ -69,11 +69,6 @@ Classification judge(const Material& material, float specular_alpha) {
 
 }  // namespace
 
-float glossOf(float alpha, float transmission) {
-  const float faded = std::clamp((1.0F - alpha) / (1.0F - kDefaultSpecularAlpha), 0.0F, 1.0F);
-  return transmission + (1.0F - transmission) * faded;
-}
-
 Classification classify(const Material& material, float specular_alpha) {
   Classification c = judge(material, specular_alpha);
   c.reason = describe(material, c, specular_alpha);

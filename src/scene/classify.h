@@ -1,23 +1,13 @@
 // Who casts caustics, who catches them. Both follow from the material, never from a name (DESIGN: Materials).
 #pragma once
 
+#include "core/optics/surface.shared.h"
 #include "scene/scene_data.h"
 
 namespace nephroid {
 
-/// A lobe counts as specular (an S event) if its microfacet alpha is below this.
-inline constexpr float kDefaultSpecularAlpha = 0.25F;
-/// Below this microfacet width a lobe is a mirror in single precision: its half-width is under 0.02 degrees.
-inline constexpr float kDeltaAlpha = 5e-4F;
 /// Normal albedo of a reflecting S lobe above which a surface generates caustics in every technique.
 inline constexpr float kGeneratorAlbedo = 0.1F;
-
-/// Weight of the dielectric specular lobe over a base that does not transmit: 1 up to the alpha at which a lobe stops
-/// being specular, then falling linearly to 0 at alpha 1. So a fully rough dielectric is exactly Lambertian and its
-/// base colour is its whole albedo, which is what authors mean by roughness 1 and what measured albedos state;
-/// single-scattering GGX at alpha 1 would add about 1.4 % of a Lambertian lobe and take 4 to 9 % from the base.
-/// What transmits has a real interface at any roughness, of weight 1.
-float glossOf(float alpha, float transmission);
 
 /// The numbers that decide, and the verdicts.
 struct Classification {

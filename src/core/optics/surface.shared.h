@@ -24,6 +24,25 @@
 
 NEPHROID_NAMESPACE_BEGIN
 
+/// A lobe counts as specular (an S event) if its microfacet alpha is below this.
+NEPHROID_CONST float kDefaultSpecularAlpha = 0.25f;
+/// Below this microfacet width a lobe is a mirror in single precision: its half-width is under 0.02 degrees.
+NEPHROID_CONST float kDeltaAlpha = 5e-4f;
+
+/// Weight of the dielectric specular lobe over a base that does not transmit: 1 up to the alpha at which a lobe stops
+/// being specular, then falling linearly to 0 at alpha 1. So a fully rough dielectric is exactly Lambertian and its
+/// base colour is its whole albedo, which is what authors mean by roughness 1 and what measured albedos state;
+/// single-scattering GGX at alpha 1 would add about 1.4 % of a Lambertian lobe and take 4 to 9 % from the base.
+/// What transmits has a real interface at any roughness, of weight 1.
+///
+/// @param alpha         microfacet width, in [0, 1]
+/// @param transmission  in [0, 1]
+/// @return              in [0, 1]
+NEPHROID_FN float glossOf(float alpha, float transmission) {
+  float faded = clamp((1.0f - alpha) / (1.0f - kDefaultSpecularAlpha), 0.0f, 1.0f);
+  return transmission + (1.0f - transmission) * faded;
+}
+
 /// The optics of a surface at one point, textures resolved; 88 bytes in scalar block layout. Flags are 0 or 1.
 struct SurfaceOptics {
   vec3 base;              // base colour, linear Rec. 709, in [0, 1]

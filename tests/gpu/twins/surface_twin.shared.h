@@ -29,6 +29,7 @@ struct SurfaceInput {
 };
 
 struct SurfaceOutput {
+  float gloss;
   float fresnel;
   vec3 reflectance;
   vec3 transmittance;
@@ -59,6 +60,7 @@ NEPHROID_FN SurfaceOutput evaluateSurface(SurfaceInput given) {
   s.is_solid = uint(given.is_solid);
 
   SurfaceOutput result;
+  result.gloss = glossOf(given.alpha, given.transmission);
   result.fresnel = interfaceFresnel(s, given.cos_theta);
   // With a given reflectance, so that each of these is judged by its own operations.
   result.reflectance = interfaceReflectance(s, given.cos_theta, given.fresnel);

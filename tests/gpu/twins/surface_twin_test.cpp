@@ -130,6 +130,8 @@ std::vector<SurfaceInput> surfaceInputs(std::uint32_t per_surface) {
 
 TEST_F(SurfaceTwin, GpuAgreesWithCpu) {
   const TwinRun run(device(), shaders::surface_comp, surfaceInputs(16), evaluateSurface, tracked::evaluateSurface);
+  // A difference from 1, a quotient by a constant, two products and a sum: 7 ulp of 1.
+  NEPHROID_EXPECT_TWINS(run, gloss, {.absolute = 1e-6});
   // As in its own twin, but the quotient of the indices has an error too: 110 ulp, and next to the angle where all is
   // reflected 2e-6. Beyond: closer to that angle, where the slope of the root is infinite.
   NEPHROID_EXPECT_TWINS(run, fresnel, {.absolute = 2e-6, .relative = 1.5e-5, .beyond = 600});
