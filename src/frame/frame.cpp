@@ -7,14 +7,16 @@
 #include <cmath>
 #include <cstring>
 
+#include "core/optics/surface.shared.h"
 #include "core/sampling/sampler.h"
+#include "frame/lamps.h"
+#include "frame/table.h"
 #include "frame/view.h"
 #include "nephroid/error.h"
-#include "shaders/frame/direct.comp.h"
-#include "shaders/frame/emission.comp.h"
 #include "shaders/frame/geometry_layer.comp.h"
-#include "shaders/frame/light_grid.comp.h"
-#include "shaders/frame/surface.comp.h"
+#include "shaders/frame/passable_seen.frag.h"
+#include "shaders/frame/shade.comp.h"
+#include "shaders/frame/tint.frag.h"
 #include "shaders/frame/visibility.frag.h"
 #include "shaders/frame/visibility.vert.h"
 
@@ -34,28 +36,9 @@ constexpr std::uint32_t kGroup = 8;
 /// Stream of the sampler that places samples in pixels; the same place in all pixels of a frame.
 constexpr std::uint32_t kFilmStream = 0x0F110000U;
 
-/// Bindings of the scene's tables and, behind them, of `types`, numbered from 5.
-std::vector<gpu::Binding> withScene(std::initializer_list<VkDescriptorType> types) {
-  std::vector<gpu::Binding> bindings = sceneBindings();
-  for (const VkDescriptorType type : types) bindings.push_back({static_cast<std::uint32_t>(bindings.size()), type});
-  return bindings;
-}
-
 constexpr VkDescriptorType kTable = VK_DESCRIPTOR_TYPE_STORAGE_BUFFER;
 constexpr VkDescriptorType kTexture = VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER;
 constexpr VkDescriptorType kStorage = VK_DESCRIPTOR_TYPE_STORAGE_IMAGE;
-
-gpu::GraphicsPipeline makeVisibility(gpu::Device& device) {
-  return gpu::GraphicsPipeline(device,
-                               {.vertex = shaders::visibility_vert,
-                                .fragment = shaders::visibility_frag,
-                                .bindings = {{0, kTable}, {1, kTable}},
-                                .vertex_buffers = {{0, sizeof(vec3), VK_VERTEX_INPUT_RATE_VERTEX}},
-                                .attributes = {{0, 0, VK_FORMAT_R32G32B32_SFLOAT, 0}},
-                                .colors = {{kSeenFormat}},
-                                .depth = kDepthFormat},
-                               "visibility");
-}
 
 gpu::Image makePixels(gpu::Device& device, const FrameSettings& settings, VkFormat format, VkImageUsageFlags usage,
                       const char* name) {
@@ -67,72 +50,67 @@ gpu::Image makePixels(gpu::Device& device, const FrameSettings& settings, VkForm
                     name);
 }
 
-/// Pushed by surface.comp.
-struct FilmPush {
+/// Pushed by shade.comp.
+struct ShadePush {
   vec2 film_offset;
+  std::uint32_t frame, light_count, lamp_count;
+  float specular_alpha, environment_scale, cos_rotation, sin_rotation;
 };
 
-/// Pushed by light_grid.comp.
-struct GridPush {
-  std::uint32_t instance, triangle_count, view_mask, node_capacity;
-};
-
-/// Pushed by emission.comp.
-struct EmissionPush {
-  vec2 film_offset;
-  float environment_scale, cos_rotation, sin_rotation;
-};
+std::vector<gpu::Constant> join(std::vector<gpu::Constant> first, const std::vector<gpu::Constant>& second) {
+  first.insert(first.end(), second.begin(), second.end());
+  return first;
+}
 
 }  // namespace
 
-/// What is compiled.
-struct RealtimeFrame::Passes {
-  explicit Passes(gpu::Device& device)
-      : visibility(makeVisibility(device)),
-        surface(device,
-                {.shader = shaders::surface_comp,
-                 .bindings = withScene({kTable, kTexture, kStorage, kStorage}),
-                 .push_bytes = sizeof(FilmPush)},
-                "surface"),
-        light_grid(device,
-                   {.shader = shaders::light_grid_comp,
-                    .bindings = withScene({kTable, kTable, kTable, kTable, kTable}),
-                    .push_bytes = sizeof(GridPush)},
-                   "light grid"),
-        emission(device,
-                 {.shader = shaders::emission_comp,
-                  .bindings = withScene({kTable, kTexture, kStorage, kStorage, kStorage}),
-                  .push_bytes = sizeof(EmissionPush)},
-                 "emission"),
-        geometry_layer(device,
-                       {.shader = shaders::geometry_layer_comp,
-                        .bindings = withScene({kTable, kStorage, kStorage, kStorage}),
-                        .push_bytes = sizeof(std::uint32_t)},
-                       "geometry layer"),
-        nearest(device, {.filter = VK_FILTER_NEAREST}, "nearest") {}
-
-  gpu::GraphicsPipeline visibility;
-  /// Once the scene is known.
-  void compileDirect(gpu::Device& device, const SceneBuffers::Receivers& receivers) {
-    direct = gpu::ComputePipeline(
-        device,
-        {.shader = shaders::direct_comp,
-         .bindings = withScene({kTable, kTable, kTable, kTable, kTable, kStorage, kStorage, kStorage}),
-         .push_bytes = sizeof(float),
-         .constants = {{0, receivers.metal}, {1, receivers.gloss}, {2, receivers.conductors}}},
-        "direct");
-  }
-
-  gpu::ComputePipeline surface, direct, light_grid, emission, geometry_layer;
-  gpu::Sampler nearest;
+/// Pushed by passable_seen.frag and tint.frag.
+struct RealtimeFrame::PassablePush {
+  vec2 film_offset, size;
+  std::uint32_t frame, geometry_only;
 };
 
-/// The triangles before a light, by cell of what it sees.
-struct RealtimeFrame::LightGrid {
-  gpu::Buffer light, views, heads, nodes, counter;
-  std::uint32_t node_capacity = 0;
-  bool built = false;  ///< and still true
-  bool shines = false;
+/// What is compiled, once the scene is known.
+struct RealtimeFrame::Passes {
+  /// @param seen  constants of shade.comp: what the camera may see that is no receiver
+  Passes(gpu::Device& device, const SceneTraits& traits, const std::vector<gpu::Constant>& seen)
+      : visibility(draw(device, traits, shaders::visibility_frag, {.format = kSeenFormat}, true, "visibility")),
+        shade(device,
+              {.shader = shaders::shade_comp,
+               .bindings = SceneBuffers::bindings({kTexture, kTexture, kTexture, kTexture, kTable, kTexture, kTexture,
+                                                   kTexture, kTexture, kStorage, kStorage}),
+               .push_bytes = sizeof(ShadePush),
+               .constants = join(traits.constants(), seen)},
+              "shade"),
+        geometry_layer(device,
+                       {.shader = shaders::geometry_layer_comp,
+                        .bindings = SceneBuffers::bindings({kTable, kTexture, kStorage}),
+                        .push_bytes = sizeof(std::uint32_t),
+                        .constants = traits.constants()},
+                       "geometry layer") {
+    if (!traits.passable) return;
+    passable = draw(device, traits, shaders::passable_seen_frag, {.format = kSeenFormat}, true, "passable surfaces");
+    tint = draw(device, traits, shaders::tint_frag, {.format = kFloat4, .blend = gpu::Blend::kMultiply}, false, "tint");
+  }
+
+  static gpu::GraphicsPipeline draw(gpu::Device& device, const SceneTraits& traits, gpu::Spirv fragment,
+                                    gpu::ColorTarget target, bool write_depth, const char* name) {
+    return {device,
+            {.vertex = shaders::visibility_vert,
+             .fragment = fragment,
+             .bindings = SceneBuffers::bindings({kTable}),
+             .push_bytes = sizeof(PassablePush),
+             .constants = traits.constants(),
+             .vertex_buffers = {{0, sizeof(vec3), VK_VERTEX_INPUT_RATE_VERTEX}},
+             .attributes = {{0, 0, VK_FORMAT_R32G32B32_SFLOAT, 0}},
+             .colors = {target},
+             .depth = kDepthFormat,
+             .depth_write = write_depth},
+            name};
+  }
+
+  gpu::GraphicsPipeline visibility, passable, tint;
+  gpu::ComputePipeline shade, geometry_layer;
 };
 
 RealtimeFrame::RealtimeFrame(gpu::Device& device, const SceneData& scene, const Camera& camera,
@@ -143,33 +121,42 @@ RealtimeFrame::RealtimeFrame(gpu::Device& device, const SceneData& scene, const 
       settings_(settings),
       bounds_(scene.bounds()),
       recorder_(device),
-      light_views_(scene, settings.shadow_size, settings.seed),
-      passes_(std::make_unique<Passes>(device)),
       camera_view_(device, sizeof(ViewRecord), VK_BUFFER_USAGE_STORAGE_BUFFER_BIT, gpu::MemoryIntent::kDevice,
                    "camera"),
       seen_(makePixels(device, settings, kSeenFormat, VK_IMAGE_USAGE_COLOR_ATTACHMENT_BIT | VK_IMAGE_USAGE_SAMPLED_BIT,
                        "seen")),
       depth_(makePixels(device, settings, kDepthFormat, VK_IMAGE_USAGE_DEPTH_STENCIL_ATTACHMENT_BIT, "depth")),
-      position_(makePixels(device, settings, kFloat4, VK_IMAGE_USAGE_STORAGE_BIT, "position")),
-      surface_(makePixels(device, settings, VK_FORMAT_R32G32B32A32_UINT, VK_IMAGE_USAGE_STORAGE_BIT, "surface")),
       direct_(makePixels(device, settings, kFloat4, VK_IMAGE_USAGE_STORAGE_BIT, "direct")),
       emission_(makePixels(device, settings, kFloat4, VK_IMAGE_USAGE_STORAGE_BIT, "emission")),
       environment_sampler_(device, {.address_u = VK_SAMPLER_ADDRESS_MODE_REPEAT}, "environment") {
-  light_grids_.resize(light_views_.count());
   recorder_.begin();
-  buffers_ = std::make_unique<SceneBuffers>(device, recorder_, scene);
+  buffers_ = std::make_unique<SceneBuffers>(device, recorder_, scene, settings.specular_alpha);
   uploadEnvironment();
+  const std::vector<LampRecord> lamps = makeLamps(scene);
+  lamp_count_ = static_cast<std::uint32_t>(lamps.size());
+  lamps_ = makeTable<LampRecord>(device, recorder_, lamps, "lamps");
+  makeTint();
   recorder_.submit();
-  passes_->compileDirect(device, buffers_->inspectReceivers(settings.specular_alpha));
+  const bool has_environment = scene.environment && scene.environment->radiance;
+  const bool emits = std::ranges::any_of(scene.materials, [](const Material& m) { return m.emits(); });
+  passes_ = std::make_unique<Passes>(device, buffers_->traits(),
+                                     std::vector<gpu::Constant>{{5, has_environment}, {6, !lamps.empty()}, {7, emits}});
+  light_grids_ = std::make_unique<LightGrids>(device, scene, *buffers_, settings.shadow_size, settings.seed);
   reset();
 }
 
 RealtimeFrame::~RealtimeFrame() = default;
 
-void RealtimeFrame::submitAndWait() {
-  recorder_.submit();
-  recorder_.wait();
-  times_.insert(times_.end(), recorder_.passTimes().begin(), recorder_.passTimes().end());
+void RealtimeFrame::makeTint() {
+  if (buffers_->traits().passable) {
+    tint_ = makePixels(device_, settings_, kFloat4, VK_IMAGE_USAGE_COLOR_ATTACHMENT_BIT | VK_IMAGE_USAGE_SAMPLED_BIT,
+                       "tint");
+    return;
+  }
+  // Something has to be bound.
+  tint_ = gpu::Image(device_, {.format = kFloat4, .usage = VK_IMAGE_USAGE_SAMPLED_BIT}, "no tint");
+  const vec4 white(1.0F);
+  recorder_.upload(tint_, std::as_bytes(std::span(&white, 1)));
 }
 
 void RealtimeFrame::uploadEnvironment() {
@@ -204,151 +191,97 @@ void RealtimeFrame::render(std::uint32_t sample) {
   // The first frame looks at the pixels' centres, as a single picture should.
   const vec2 film_offset = sample == 0 ? vec2(0.5F) : sampler.next2D();
   times_.clear();
-  for (std::size_t i = 0; i < light_grids_.size(); ++i) prepareLight(i, sample);
+  light_grids_->update(recorder_, sample, times_);
   recorder_.begin();
-  recordCamera(film_offset);
-  for (const LightGrid& grid : light_grids_)
-    if (grid.shines) recordLight(grid);
-  recordEmission(film_offset);
-  submitAndWait();
+  recordVisibility(film_offset, sample, false);
+  if (buffers_->traits().passable) recordTint(film_offset, sample);
+  recordShade(film_offset, sample);
+  recorder_.submit();
+  recorder_.wait();
+  times_.insert(times_.end(), recorder_.passTimes().begin(), recorder_.passTimes().end());
   ++samples_;
 }
 
-void RealtimeFrame::drawVisibility(const ViewRecord& view) {
+void RealtimeFrame::drawScene(PassCommands& commands, const ViewRecord& view, bool passable) {
+  commands.bindResources(buffers_->bound({Bound(7, camera_view_)}));
+  commands.bindVertexBuffer(buffers_->positions());
+  commands.bindIndexBuffer(buffers_->indices());
+  for (const SceneBuffers::Draw& draw : buffers_->draws())
+    if (draw.passable == passable && mayShow(view, draw.bounds))
+      commands.drawIndexed(draw.index_count, draw.first_index, draw.vertex_offset, 1, draw.instance);
+}
+
+std::vector<Use> RealtimeFrame::drawUses(std::initializer_list<Use> targets) const {
+  std::vector<Use> uses = buffers_->uses(Access::kGraphicsRead, {Use(camera_view_, Access::kGraphicsRead),
+                                                                 Use(buffers_->positions(), Access::kVertexFetch),
+                                                                 Use(buffers_->indices(), Access::kVertexFetch)});
+  uses.insert(uses.end(), targets);
+  return uses;
+}
+
+void RealtimeFrame::recordVisibility(vec2 film_offset, std::uint32_t frame, bool geometry_only) {
+  view_ = makeCameraView(camera_, settings_.width, settings_.height, bounds_, film_offset);
+  recorder_.upload(camera_view_, std::as_bytes(std::span(&view_, 1)));
   recorder_.pass("visibility",
-                 {Use(buffers_->instances(), Access::kGraphicsRead), Use(camera_view_, Access::kGraphicsRead),
-                  Use(buffers_->positions(), Access::kVertexFetch), Use(buffers_->indices(), Access::kVertexFetch),
-                  Use(seen_, Access::kColorTarget, true), Use(depth_, Access::kDepthTarget, true)},
+                 drawUses({Use(seen_, Access::kColorTarget, true), Use(depth_, Access::kDepthTarget, true)}),
                  [&](PassCommands& commands) {
                    commands.beginRendering({.colors = {{.image = seen_}}, .depth = &depth_});
                    commands.bind(passes_->visibility);
-                   commands.bindResources({Bound(0, buffers_->instances()), Bound(1, camera_view_)});
-                   commands.bindVertexBuffer(buffers_->positions());
-                   commands.bindIndexBuffer(buffers_->indices());
-                   for (const SceneBuffers::Draw& draw : buffers_->draws())
-                     if (mayShow(view, draw.bounds))
-                       commands.drawIndexed(draw.index_count, draw.first_index, draw.vertex_offset, 1, draw.instance);
+                   drawScene(commands, view_, false);
+                   if (buffers_->traits().passable) {
+                     commands.bind(passes_->passable);
+                     commands.pushConstants(passablePush(film_offset, frame, geometry_only));
+                     drawScene(commands, view_, true);
+                   }
                    commands.endRendering();
                  });
 }
 
-void RealtimeFrame::recordCamera(vec2 film_offset) {
-  const ViewRecord view = makeCameraView(camera_, settings_.width, settings_.height, bounds_, film_offset);
-  recorder_.upload(camera_view_, std::as_bytes(std::span(&view, 1)));
-  drawVisibility(view);
-
-  std::vector<Use> uses = buffers_->uses(Access::kComputeRead);
-  uses.insert(uses.end(), {Use(camera_view_, Access::kComputeRead), Use(seen_, Access::kComputeRead),
-                           Use(position_, Access::kComputeWrite, true), Use(surface_, Access::kComputeWrite, true)});
-  recorder_.pass("surface", uses, [&](PassCommands& commands) {
-    commands.bind(passes_->surface);
-    std::vector<Bound> bound = buffers_->bound();
-    bound.insert(bound.end(),
-                 {Bound(5, camera_view_), Bound(6, seen_, passes_->nearest), Bound(7, position_), Bound(8, surface_)});
-    commands.bindResources(bound);
-    commands.pushConstants(FilmPush{film_offset});
-    commands.dispatch(gpu::groupsOf(seen_.desc().width, kGroup), gpu::groupsOf(seen_.desc().height, kGroup));
-  });
+RealtimeFrame::PassablePush RealtimeFrame::passablePush(vec2 film_offset, std::uint32_t frame,
+                                                        bool geometry_only) const {
+  return {film_offset, vec2(static_cast<float>(settings_.width), static_cast<float>(settings_.height)), frame,
+          geometry_only ? 1U : 0U};
 }
 
-void RealtimeFrame::prepareLight(std::size_t index, std::uint32_t sample) {
-  LightGrid& grid = light_grids_[index];
-  if (grid.built) return;
-  const std::optional<LightView> view = light_views_.make(index, sample);
-  grid.shines = view.has_value();
-  if (!view) return;
-  constexpr VkBufferUsageFlags kUsage = VK_BUFFER_USAGE_STORAGE_BUFFER_BIT;
-  constexpr gpu::MemoryIntent kDevice = gpu::MemoryIntent::kDevice;
-  if (!grid.light.valid()) {
-    const VkDeviceSize count = view->light.view_count;
-    const VkDeviceSize cells = count * settings_.shadow_size * settings_.shadow_size;
-    grid.light = gpu::Buffer(device_, sizeof(LightRecord), kUsage, kDevice, "light");
-    grid.views = gpu::Buffer(device_, count * sizeof(ViewRecord), kUsage, kDevice, "views of a light");
-    grid.heads = gpu::Buffer(device_, (cells + 1) * sizeof(std::uint32_t), kUsage, kDevice, "heads of a light's grid");
-    grid.counter = gpu::Buffer(device_, sizeof(std::uint32_t), kUsage, kDevice, "counter of a light's grid");
-    // Small triangles lie in one cell or two of one view; if there are more, the first build tells.
-    std::uint32_t triangles = 0;
-    for (const SceneBuffers::Draw& draw : buffers_->draws()) triangles += draw.index_count / 3;
-    const std::uint32_t most = device_.limits().maxStorageBufferRange / sizeof(GridNode);
-    grid.node_capacity = std::min(3 * triangles + 1024, most);
-  }
-  for (;;) {
-    if (!grid.nodes.valid())
-      grid.nodes = gpu::Buffer(device_, grid.node_capacity * sizeof(GridNode), kUsage, kDevice, "a light's grid");
-    buildGrid(grid, *view);
-    const std::uint32_t nodes = gpu::readBackAs<std::uint32_t>(device_, grid.counter)[0];
-    if (nodes <= grid.node_capacity) break;
-    // As many again will do if the light stays, and nearly so many if it moves.
-    const std::uint32_t most = device_.limits().maxStorageBufferRange / sizeof(GridNode);
-    grid.node_capacity = std::max(nodes, std::min(nodes + nodes / 4, most));
-    grid.nodes = gpu::Buffer();
-  }
-  grid.built = !view->varies;
+void RealtimeFrame::recordTint(vec2 film_offset, std::uint32_t frame) {
+  recorder_.pass(
+      "tint", drawUses({Use(tint_, Access::kColorTarget, true), Use(depth_, Access::kDepthTarget)}),
+      [&](PassCommands& commands) {
+        commands.beginRendering(
+            {.colors = {{.image = tint_, .value = {.float32 = {1, 1, 1, 1}}}}, .depth = &depth_, .clear_depth = false});
+        commands.bind(passes_->tint);
+        commands.pushConstants(passablePush(film_offset, frame, false));
+        drawScene(commands, view_, true);
+        commands.endRendering();
+      });
 }
 
-void RealtimeFrame::buildGrid(LightGrid& grid, const LightView& view) {
-  recorder_.begin();
-  recorder_.upload(grid.light, std::as_bytes(std::span(&view.light, 1)));
-  recorder_.upload(grid.views, std::as_bytes(std::span(view.views)));
-  recorder_.pass("clear grid", {Use(grid.heads, Access::kTransferWrite), Use(grid.counter, Access::kTransferWrite)},
-                 [&](PassCommands& commands) {
-                   commands.fill(grid.heads, kNoNode);
-                   commands.fill(grid.counter, 0);
-                 });
-  std::vector<Use> uses = buffers_->uses(Access::kComputeRead);
-  uses.insert(uses.end(), {Use(grid.views, Access::kComputeRead), Use(grid.light, Access::kComputeRead),
-                           Use(grid.heads, Access::kComputeWrite), Use(grid.nodes, Access::kComputeWrite),
-                           Use(grid.counter, Access::kComputeWrite)});
-  recorder_.pass("light grid", uses, [&](PassCommands& commands) {
-    commands.bind(passes_->light_grid);
-    std::vector<Bound> bound = buffers_->bound();
-    bound.insert(bound.end(), {Bound(5, grid.views), Bound(6, grid.light), Bound(7, grid.heads), Bound(8, grid.nodes),
-                               Bound(9, grid.counter)});
-    commands.bindResources(bound);
-    for (const SceneBuffers::Draw& draw : buffers_->draws()) {
-      std::uint32_t view_mask = 0;
-      for (std::size_t v = 0; v < view.views.size(); ++v)
-        if (mayShow(view.views[v], draw.bounds)) view_mask |= 1U << v;
-      if (view_mask == 0) continue;
-      const std::uint32_t triangles = draw.index_count / 3;
-      commands.pushConstants(GridPush{draw.instance, triangles, view_mask, grid.node_capacity});
-      commands.dispatch(gpu::groupsOf(triangles, 64));
-    }
-  });
-  submitAndWait();
-}
-
-void RealtimeFrame::recordLight(const LightGrid& grid) {
-  std::vector<Use> uses = buffers_->uses(Access::kComputeRead);
-  uses.insert(uses.end(), {Use(camera_view_, Access::kComputeRead), Use(grid.views, Access::kComputeRead),
-                           Use(grid.light, Access::kComputeRead), Use(grid.heads, Access::kComputeRead),
-                           Use(grid.nodes, Access::kComputeRead), Use(position_, Access::kComputeWrite),
-                           Use(surface_, Access::kComputeWrite), Use(direct_, Access::kComputeWrite)});
-  recorder_.pass("direct", uses, [&](PassCommands& commands) {
-    commands.bind(passes_->direct);
-    std::vector<Bound> bound = buffers_->bound();
-    bound.insert(bound.end(), {Bound(5, camera_view_), Bound(6, grid.views), Bound(7, grid.light), Bound(8, grid.heads),
-                               Bound(9, grid.nodes), Bound(10, position_), Bound(11, surface_), Bound(12, direct_)});
-    commands.bindResources(bound);
-    commands.pushConstants(settings_.specular_alpha);
-    commands.dispatch(gpu::groupsOf(seen_.desc().width, kGroup), gpu::groupsOf(seen_.desc().height, kGroup));
-  });
-}
-
-void RealtimeFrame::recordEmission(vec2 film_offset) {
+void RealtimeFrame::recordShade(vec2 film_offset, std::uint32_t frame) {
   const bool present = scene_.environment && scene_.environment->radiance;
   const float rotation = present ? radians(scene_.environment->rotation_deg) : 0.0F;
-  const EmissionPush push{film_offset, present ? scene_.environment->scale : 0.0F, std::cos(rotation),
-                          std::sin(rotation)};
-  std::vector<Use> uses = buffers_->uses(Access::kComputeRead);
-  uses.insert(uses.end(), {Use(camera_view_, Access::kComputeRead), Use(environment_, Access::kComputeRead),
-                           Use(position_, Access::kComputeWrite), Use(surface_, Access::kComputeWrite),
-                           Use(emission_, Access::kComputeWrite)});
-  recorder_.pass("emission", uses, [&](PassCommands& commands) {
-    commands.bind(passes_->emission);
-    std::vector<Bound> bound = buffers_->bound();
-    bound.insert(bound.end(), {Bound(5, camera_view_), Bound(6, environment_, environment_sampler_),
-                               Bound(7, position_), Bound(8, surface_), Bound(9, emission_)});
+  const ShadePush push{film_offset,
+                       frame,
+                       light_grids_->lightCount(),
+                       lamp_count_,
+                       settings_.specular_alpha,
+                       present ? scene_.environment->scale : 0.0F,
+                       std::cos(rotation),
+                       std::sin(rotation)};
+  std::vector<Use> uses = buffers_->uses(
+      Access::kComputeRead,
+      {Use(camera_view_, Access::kComputeRead), Use(seen_, Access::kComputeRead), Use(tint_, Access::kComputeRead),
+       Use(lamps_, Access::kComputeRead), Use(environment_, Access::kComputeRead), Use(direct_, Access::kComputeWrite),
+       Use(emission_, Access::kComputeWrite)});
+  const std::vector<Use> grids = light_grids_->uses();
+  uses.insert(uses.end(), grids.begin(), grids.end());
+  recorder_.pass("shade", uses, [&](PassCommands& commands) {
+    const gpu::Sampler& nearest = buffers_->sampler();
+    commands.bind(passes_->shade);
+    std::vector<Bound> bound = buffers_->bound(
+        {Bound(11, camera_view_), Bound(12, seen_, nearest), Bound(13, tint_, nearest), Bound(14, lamps_, nearest),
+         Bound(15, environment_, environment_sampler_), Bound(16, direct_), Bound(17, emission_)});
+    const std::vector<Bound> of_lights = light_grids_->bound(SceneBuffers::kBindings);
+    bound.insert(bound.end(), of_lights.begin(), of_lights.end());
     commands.bindResources(bound);
     commands.pushConstants(push);
     commands.dispatch(gpu::groupsOf(seen_.desc().width, kGroup), gpu::groupsOf(seen_.desc().height, kGroup));
@@ -384,15 +317,14 @@ Image RealtimeFrame::readGeometry(const std::string& layer) {
   if (kind == kNames.size()) throw InternalError(fmt::format("'{}' is no layer of the geometry", layer));
   const gpu::Image target = makePixels(device_, settings_, kFloat4, VK_IMAGE_USAGE_STORAGE_BIT, "layer");
   recorder_.begin();
-  recordCamera(vec2(0.5F));
-  std::vector<Use> uses = buffers_->uses(Access::kComputeRead);
-  uses.insert(uses.end(), {Use(camera_view_, Access::kComputeRead), Use(position_, Access::kComputeWrite),
-                           Use(surface_, Access::kComputeWrite), Use(target, Access::kComputeWrite, true)});
+  recordVisibility(vec2(0.5F), 0, true);
+  const std::vector<Use> uses =
+      buffers_->uses(Access::kComputeRead, {Use(camera_view_, Access::kComputeRead), Use(seen_, Access::kComputeRead),
+                                            Use(target, Access::kComputeWrite, true)});
   recorder_.pass("geometry layer", uses, [&](PassCommands& commands) {
     commands.bind(passes_->geometry_layer);
-    std::vector<Bound> bound = buffers_->bound();
-    bound.insert(bound.end(), {Bound(5, camera_view_), Bound(6, position_), Bound(7, surface_), Bound(8, target)});
-    commands.bindResources(bound);
+    commands.bindResources(
+        buffers_->bound({Bound(7, camera_view_), Bound(8, seen_, buffers_->sampler()), Bound(9, target)}));
     commands.pushConstants(kind);
     commands.dispatch(gpu::groupsOf(seen_.desc().width, kGroup), gpu::groupsOf(seen_.desc().height, kGroup));
   });
@@ -401,26 +333,17 @@ Image RealtimeFrame::readGeometry(const std::string& layer) {
 }
 
 std::vector<std::string> describeFrameLimits(const SceneData& scene) {
-  bool textures = false, colors = false, panes = false, cutouts = false;
+  bool rough_panes = false, panes = false, spheres = false;
   for (const Material& m : scene.materials) {
-    for (const TextureRef* reference :
-         {&m.base_color_texture, &m.metallic_roughness_texture, &m.normal_texture, &m.emission_texture,
-          &m.transmission_texture, &m.specular_texture, &m.specular_color_texture})
-      textures = textures || reference->valid();
-    panes = panes || (m.transmits() && !m.isSolidDielectric());
-    cutouts = cutouts || m.alpha_mode != AlphaMode::kOpaque;
+    const bool pane = m.transmits() && !m.isSolidDielectric();
+    panes = panes || pane || m.alpha_mode == AlphaMode::kBlend;
+    rough_panes = rough_panes || (pane && m.roughness * m.roughness >= kDeltaAlpha);
   }
-  for (const Mesh& mesh : scene.meshes) colors = colors || !mesh.colors.empty();
+  for (const Light& light : scene.lights) spheres = spheres || (light.kind != LightKind::kSun && light.radius > 0.0F);
   std::vector<std::string> limits;
-  if (textures) limits.emplace_back("textures are not sampled: materials have their factors alone");
-  if (colors) limits.emplace_back("vertex colours are left out");
-  if (panes) limits.emplace_back("panes are opaque: no light and no sight passes through them");
-  if (cutouts) limits.emplace_back("masks and blending by alpha are left out: such surfaces are solid");
-  for (const Light& light : scene.lights)
-    if (light.radius > 0.0F || light.angle_deg > 0.0F) {
-      limits.emplace_back("lamps and suns with a size light what they shine on, but are not seen themselves");
-      break;
-    }
+  if (rough_panes) limits.emplace_back("rough panes are opaque: no light and no sight passes through them");
+  if (panes && spheres)
+    limits.emplace_back("a lamp before a pane has the tint of what is seen through the pane behind it");
   return limits;
 }
 

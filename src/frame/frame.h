@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "core/image/image.h"
-#include "frame/light_views.h"
+#include "frame/light_grids.h"
 #include "frame/scene_buffers.h"
 #include "gpu/commands.h"
 
@@ -46,15 +46,15 @@ class RealtimeFrame {
 
  private:
   struct Passes;
-  struct LightGrid;
-  void submitAndWait();
-  void recordCamera(vec2 film_offset);
-  void prepareLight(std::size_t index, std::uint32_t sample);
-  void buildGrid(LightGrid& grid, const LightView& view);
-  void recordLight(const LightGrid& grid);
-  void recordEmission(vec2 film_offset);
-  void drawVisibility(const ViewRecord& view);
+  struct PassablePush;
   void uploadEnvironment();
+  void makeTint();
+  void recordVisibility(vec2 film_offset, std::uint32_t frame, bool geometry_only);
+  void recordTint(vec2 film_offset, std::uint32_t frame);
+  void recordShade(vec2 film_offset, std::uint32_t frame);
+  void drawScene(gpu::PassCommands& commands, const ViewRecord& view, bool passable);
+  std::vector<gpu::Use> drawUses(std::initializer_list<gpu::Use> targets) const;
+  PassablePush passablePush(vec2 film_offset, std::uint32_t frame, bool geometry_only) const;
 
   gpu::Device& device_;
   const SceneData& scene_;
@@ -63,12 +63,13 @@ class RealtimeFrame {
   Bounds bounds_;
   gpu::CommandRecorder recorder_;
   std::unique_ptr<SceneBuffers> buffers_;
-  LightViews light_views_;
+  std::unique_ptr<LightGrids> light_grids_;
   std::unique_ptr<Passes> passes_;
+  ViewRecord view_{};
   gpu::Buffer camera_view_;
-  gpu::Image seen_, depth_, position_, surface_, direct_, emission_, environment_;
+  gpu::Image seen_, depth_, tint_, direct_, emission_, environment_, lamps_;
   gpu::Sampler environment_sampler_;
-  std::vector<LightGrid> light_grids_;
+  std::uint32_t lamp_count_ = 0;
   std::vector<gpu::PassTime> times_;
   std::uint32_t samples_ = 0;
 };

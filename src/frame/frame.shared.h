@@ -1,4 +1,7 @@
-// What the frame's shaders and C++ both see: the scene's tables, cameras and light views. Scalar block layout.
+// What the frame's shaders and C++ both see: the scene's tables, cameras and lights.
+//
+// Tables are images of four words a texel (frame/tables.glsl), because software devices read an image ten times as fast
+// as a buffer. A record here is what C++ writes, word for word; its size is a multiple of 16 bytes.
 #ifndef NEPHROID_FRAME_SHARED_H
 #define NEPHROID_FRAME_SHARED_H
 
@@ -6,41 +9,91 @@
 
 NEPHROID_NAMESPACE_BEGIN
 
+/// Texels in a row of a table: texel i lies at (i mod 2^12, i / 2^12).
+NEPHROID_CONST uint kTableShift = 12u;
+/// "Not there": of textures, attributes, nodes.
+NEPHROID_CONST uint kNowhere = 0xFFFFFFFFu;
+
+/// One triangle of a mesh, object space.
+struct TriangleRecord {
+  vec3 a;
+  uint normal_a;  // of the vertex, as packUnitVector
+  vec3 b;
+  uint normal_b;
+  vec3 c;
+  uint normal_c;
+};
+
 /// One mesh placed in the world.
 struct InstanceRecord {
   // World from object, row by row: position = (dot(row, vec4(p, 1)), …).
   vec4 row_x;
   vec4 row_y;
   vec4 row_z;
-  uint first_vertex;  // of its mesh in the tables of vertices
-  uint first_index;   // of its mesh in the table of indices
+  uint first_triangle;
   uint material;
   uint flags;  // kInstance…
+  uint pad;
+  // Where in the table of attributes those of the first triangle lie; kNowhere. A triangle has two texels of
+  // coordinates, three of colours, three of tangents.
+  uint texcoords_0;
+  uint texcoords_1;
+  uint colors;
+  uint tangents;
 };
 
 NEPHROID_CONST uint kInstanceMirrored = 1u;    // the winding is reversed in world space
 NEPHROID_CONST uint kInstanceHasNormals = 2u;  // else flat
+NEPHROID_CONST uint kInstancePassable = 4u;    // its material may let light pass straight through
 
-/// A material without its textures; see SurfaceOptics for the terms.
+/// A material; see scene/scene_data.h for the terms. Indices of textures are kNowhere where there is none.
 struct MaterialRecord {
-  vec3 base;
-  float metallic;
-  vec3 specular_tint;
-  float alpha;
+  vec4 base;
   vec3 emission;  // W/m²/sr
+  float metallic;
+  vec3 specular_tint;  // factor times colour
+  float roughness;
   float transmission;
-  vec3 conductor_ior;
-  float gloss;
-  vec3 conductor_k;
   float ior;
   float average_fresnel;  // towards the material from vacuum
   uint flags;             // kMaterial…
+  vec3 conductor_ior;
+  float alpha_cutoff;
+  vec3 conductor_k;
+  float normal_scale;
+  uint base_texture;
+  uint metallic_roughness_texture;
+  uint normal_texture;
+  uint emission_texture;
+  uint transmission_texture;
+  uint specular_texture;
+  uint specular_color_texture;
+  uint pad;
 };
 
 NEPHROID_CONST uint kMaterialHasConductor = 1u;
-NEPHROID_CONST uint kMaterialIsPane = 2u;
-NEPHROID_CONST uint kMaterialIsSolid = 4u;
-NEPHROID_CONST uint kMaterialDoubleSided = 8u;  // of emission only
+NEPHROID_CONST uint kMaterialIsSolid = 2u;
+NEPHROID_CONST uint kMaterialDoubleSided = 4u;  // of emission only
+NEPHROID_CONST uint kMaterialIsMask = 8u;       // alpha decides whether the surface is there
+NEPHROID_CONST uint kMaterialIsBlend = 16u;     // alpha is how much of it is there
+
+/// How a material uses an image.
+struct TextureRecord {
+  uint first_texel;  // in its table of texels
+  uint width;
+  uint height;
+  uint flags;  // kTexture…
+  vec3 row_u;  // coordinates in the image from those of the mesh
+  float pad_u;
+  vec3 row_v;
+  float pad_v;
+};
+
+NEPHROID_CONST uint kTextureIsFloat = 1u;  // in the table of floats, else of bytes
+NEPHROID_CONST uint kTextureIsNearest = 2u;
+NEPHROID_CONST uint kTextureSecondSet = 4u;
+NEPHROID_CONST uint kTextureWrapU = 3u;  // shift of two bits: 0 repeats, 1 clamps, 2 mirrors
+NEPHROID_CONST uint kTextureWrapV = 5u;
 
 /// From where a picture of the scene is taken: pixel centres to rays, and world to clip space.
 struct ViewRecord {
@@ -51,11 +104,14 @@ struct ViewRecord {
   vec3 eye;  // perspective: the eye; orthographic: the middle of the plane that rays start on
   uint is_orthographic;
   vec3 forward;
+  float pad_forward;
   vec3 right;  // of half the picture's width: at distance 1, or in m if orthographic
-  vec3 up;     // likewise of half its height
+  float pad_right;
+  vec3 up;  // likewise of half its height
+  float pad_up;
 };
 
-/// One view of a light: the scene as seen from a point or along a direction of it, for one sample of the light.
+/// A light as a point or a direction that shines, for one sample of it.
 struct LightRecord {
   vec3 position;    // of a point
   uint kind;        // kLight…
@@ -65,8 +121,10 @@ struct LightRecord {
   float cos_inner;  // spot
   vec3 normal;      // of the surface that the point lies on: the value is then times the cosine to it
   uint surface;     // kSurface…
-  uint view_count;  // 6: a cube of views along ±x, ±y, ±z; 1
-  float grid_size;  // cells along a side of each view
+  uint view_count;  // 6: a cube of views along ±x, ±y, ±z; 1; 0: it does not shine
+  uint first_view;
+  uint grid_size;  // cells along a side of each view
+  uint pad;
 };
 
 NEPHROID_CONST uint kLightPoint = 0u;
@@ -77,18 +135,37 @@ NEPHROID_CONST uint kSurfaceNone = 0u;   // a point in the open
 NEPHROID_CONST uint kSurfaceFront = 1u;  // shines to the side of its normal
 NEPHROID_CONST uint kSurfaceBoth = 2u;
 
-/// An entry of the list of a cell: see light_grid.comp.glsl.
-struct GridNode {
-  uint instance;
-  uint triangle;
-  uint next;  // kNoNode at the end
-  // Its corners, world: fetched through instance and indices they would be read from five places.
-  vec3 a;
-  vec3 b;
-  vec3 c;
+/// A light with a size, as it is seen: a sphere, or a disc infinitely far away.
+struct LampRecord {
+  vec3 position;
+  float radius;   // m; 0: a sun
+  vec3 radiance;  // W/m²/sr; of a spot on its axis
+  float cos_outer;
+  vec3 direction;  // sun, spot: along the travel of light
+  float cos_inner;
+  float one_minus_cos;  // sun: of half its angle
+  uint is_spot;
+  uint pad_0;
+  uint pad_1;
 };
 
-NEPHROID_CONST uint kNoNode = 0xFFFFFFFFu;
+/// An entry of the list of a cell: see light_grid.comp.glsl. Its triangle, world: fetched through instance and mesh it
+/// would be read from three places.
+struct GridNode {
+  vec3 a;
+  uint next;  // kNowhere at the end
+  vec3 b;
+  uint instance;  // and, above it, kNodePassable
+  vec3 c;
+  uint triangle;
+};
+
+NEPHROID_CONST uint kNodePassable = 0x80000000u;
+
+/// Cells of the fine grid along a side of one of the coarse grid, where the lists of large triangles are.
+NEPHROID_CONST uint kCoarseCell = 8u;
+/// Cells in a row of the image of heads.
+NEPHROID_CONST uint kHeadsShift = 10u;
 
 NEPHROID_NAMESPACE_END
 

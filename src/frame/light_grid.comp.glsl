@@ -1,39 +1,61 @@
 // Which triangles lie before each cell of what a light sees: one list a cell, for shadows with exact edges.
 //
 // A ray from a light stays in one cell of its view, so whatever blocks the ray is in that cell's list, at any depth.
-// Triangles that cover very many cells go to one list that every ray looks through: there are only few of them.
+// Triangles that cover many cells go to the lists of a coarser grid, which every ray looks through as well.
 // Lists are linked; their order differs between runs, what they hold does not.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_scalar_block_layout : require
-#include "frame/scene_access.glsl"
+#include "frame/surface.glsl"
 
 layout(local_size_x = 64) in;
-layout(scalar, set = 0, binding = 5) readonly buffer LightViews { ViewRecord light_views[]; };
-layout(scalar, set = 0, binding = 6) readonly buffer Lights { LightRecord lights[]; };
-layout(scalar, set = 0, binding = 7) buffer Heads { uint heads[]; };  // by cell, view by view; the last: large ones
-layout(scalar, set = 0, binding = 8) writeonly buffer Nodes { GridNode nodes[]; };
-layout(scalar, set = 0, binding = 9) buffer Counters { uint node_count; };
+layout(set = 0, binding = 7) uniform usampler2D view_table;
+// By light; in each, fine cells view by view, then coarse cells.
+layout(set = 0, binding = 8, r32ui) uniform uimage2DArray heads;
+layout(set = 0, binding = 9, rgba32ui) writeonly uniform uimage2D nodes;
+layout(scalar, set = 0, binding = 10) buffer Counters { uint node_counts[]; };  // by light
 
 layout(push_constant, scalar) uniform Push {
   uint instance_index;
   uint triangle_count;
-  uint view_mask;      // views that may show the instance
+  uint light;
+  uint first_view;
+  uint view_count;
+  uint view_mask;  // views that may show the instance
+  uint grid_size;  // cells along a side of a view
+  uint first_node;
   uint node_capacity;
 };
 
-/// More cells than this, and a triangle is a large one: one thread writes all cells of a triangle.
-const int kLargeCells = 1024;
+/// More cells than this, and a triangle is a large one.
+const int kLargeCells = 128;
 /// What is this near to the plane of the light, relative to the farthest corner, is cut off: it would be projected to
 /// infinity, and no point that could be shadowed lies between.
 const float kCutShare = 1e-6;
 /// Widening of triangles, in cells: the rounding of projected corners, of which cells know nothing.
 const float kMargin = 0.01;
 
-void addNode(uint list, uint triangle, Triangle t) {
-  uint node = atomicAdd(node_count, 1u);
-  if (node >= node_capacity) return;  // counted: the lists are built again with room for all
-  nodes[node] = GridNode(instance_index, triangle, atomicExchange(heads[list], node), t.a, t.b, t.c);
+void addNode(uint list, GridNode node) {
+  uint place = atomicAdd(node_counts[light], 1u);
+  if (place >= node_capacity) return;  // counted: the lists are built again with room for all
+  place += first_node;
+  ivec3 head = ivec3(list & ((1u << kHeadsShift) - 1u), list >> kHeadsShift, light);
+  node.next = imageAtomicExchange(heads, head, place);
+  imageStore(nodes, texelOf(3u * place), uvec4(floatBitsToUint(node.a), node.next));
+  imageStore(nodes, texelOf(3u * place + 1u), uvec4(floatBitsToUint(node.b), node.instance));
+  imageStore(nodes, texelOf(3u * place + 2u), uvec4(floatBitsToUint(node.c), node.triangle));
+}
+
+struct ViewRows {
+  vec4 x;
+  vec4 y;
+  vec4 w;
+};
+
+ViewRows fetchRows(uint view) {
+  return ViewRows(uintBitsToFloat(texelFetch(view_table, texelOf(8u * view), 0)),
+                  uintBitsToFloat(texelFetch(view_table, texelOf(8u * view + 1u), 0)),
+                  uintBitsToFloat(texelFetch(view_table, texelOf(8u * view + 3u), 0)));
 }
 
 /// The part of a triangle before the light, projected: up to four corners, in cells.
@@ -42,12 +64,12 @@ struct Outline {
   int count;
 };
 
-Outline project(ViewRecord view, Triangle t, float size) {
+Outline project(ViewRows view, GridNode t, float size) {
   vec4 world[3] = vec4[3](vec4(t.a, 1.0), vec4(t.b, 1.0), vec4(t.c, 1.0));
   vec3 clip[3];
   float farthest = 0.0;
   for (int k = 0; k < 3; ++k) {
-    clip[k] = vec3(dot(view.clip_row_x, world[k]), dot(view.clip_row_y, world[k]), dot(view.clip_row_w, world[k]));
+    clip[k] = vec3(dot(view.x, world[k]), dot(view.y, world[k]), dot(view.w, world[k]));
     farthest = max(farthest, clip[k].z);
   }
   Outline o;
@@ -89,8 +111,17 @@ float orientationOf(Outline o) {
   return area < 0.0 ? -1.0 : 1.0;
 }
 
-void addToView(uint view_index, Triangle t, uint triangle, int size) {
-  Outline o = project(light_views[view_index], t, float(size));
+/// Adds a triangle to the cells that it covers of a grid of a view, whose lists begin at `first_list`.
+void addToCells(Outline o, GridNode node, uint first_list, int size, ivec2 first, ivec2 last) {
+  float orientation = orientationOf(o);
+  for (int y = first.y; y <= last.y; ++y)
+    for (int x = first.x; x <= last.x; ++x)
+      if (overlaps(o, orientation, vec2(x, y))) addNode(first_list + uint(y * size + x), node);
+}
+
+void addToView(uint view, GridNode node) {
+  int size = int(grid_size);
+  Outline o = project(fetchRows(first_view + view), node, float(size));
   if (o.count == 0) return;
   vec2 lower = o.corners[0], upper = o.corners[0];
   for (int k = 1; k < o.count; ++k) {
@@ -101,22 +132,25 @@ void addToView(uint view_index, Triangle t, uint triangle, int size) {
   ivec2 first = ivec2(clamp(floor(lower - kMargin), vec2(0.0), vec2(float(size - 1))));
   ivec2 last = ivec2(clamp(floor(upper + kMargin), vec2(0.0), vec2(float(size - 1))));
   ivec2 extent = last - first + 1;
-  uint cells = uint(size * size);
+  uint first_list = view * grid_size * grid_size;
   if (extent.x * extent.y > kLargeCells) {
-    addNode(lights[0].view_count * cells, triangle, t);
-    return;
+    int coarse = int(kCoarseCell);
+    for (int k = 0; k < o.count; ++k) o.corners[k] /= float(coarse);
+    size /= coarse;
+    first /= coarse;
+    last /= coarse;
+    first_list = view_count * grid_size * grid_size + view * uint(size * size);
   }
-  float orientation = orientationOf(o);
-  for (int y = first.y; y <= last.y; ++y)
-    for (int x = first.x; x <= last.x; ++x)
-      if (overlaps(o, orientation, vec2(x, y))) addNode(view_index * cells + uint(y * size + x), triangle, t);
+  addToCells(o, node, first_list, size, first, last);
 }
 
 void main() {
   uint triangle = gl_GlobalInvocationID.x;
   if (triangle >= triangle_count) return;
-  InstanceRecord instance = instances[instance_index];
-  Triangle t = fetchTriangle(instance, triangleVertices(instance, triangle));
-  for (uint v = 0u; v < lights[0].view_count; ++v)
-    if ((view_mask & (1u << v)) != 0u) addToView(v, t, triangle, int(lights[0].grid_size));
+  InstanceRecord instance = fetchInstance(instance_index);
+  Triangle t = toWorld(instance, fetchTriangle(instance.first_triangle + triangle));
+  uint flagged = instance_index | ((instance.flags & kInstancePassable) != 0u ? kNodePassable : 0u);
+  GridNode node = GridNode(t.a, 0u, t.b, flagged, t.c, triangle);
+  for (uint v = 0u; v < view_count; ++v)
+    if ((view_mask & (1u << v)) != 0u) addToView(v, node);
 }

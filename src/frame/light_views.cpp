@@ -6,6 +6,7 @@
 #include "core/sampling/sampler.h"
 #include "core/sampling/warp.h"
 #include "frame/view.h"
+#include "scene/texture.h"
 
 namespace nephroid {
 namespace {
@@ -13,12 +14,14 @@ namespace {
 /// Streams of the sampler, one for each light; those of pixels and photons of other engines do not matter here.
 constexpr std::uint32_t kFirstStream = 0x11670000U;
 
+bool isMirrored(const Instance& instance) { return glm::determinant(mat3(instance.world_from_object)) < 0.0F; }
+
 /// World-space corners, wound so that their normal points out of the solid.
 void fetchCorners(const SceneData& scene, const Instance& instance, std::size_t triangle, vec3 corners[3]) {
   const Mesh& mesh = scene.meshes[instance.mesh];
   const uvec3& t = mesh.triangles[triangle];
   for (int k = 0; k < 3; ++k) corners[k] = transformPoint(instance.world_from_object, mesh.positions[t[k]]);
-  if (glm::determinant(mat3(instance.world_from_object)) < 0.0F) std::swap(corners[1], corners[2]);
+  if (isMirrored(instance)) std::swap(corners[1], corners[2]);
 }
 
 /// A direction from the centre of a sphere light to a point of it.
@@ -42,8 +45,8 @@ vec3 sampleSphere(const Bounds& scene, vec3 centre, vec2 u, float& pdf_solid_ang
 
 }  // namespace
 
-LightViews::LightViews(const SceneData& scene, std::uint32_t grid_size, std::uint32_t seed)
-    : scene_(scene), bounds_(scene.bounds()), grid_size_(grid_size), seed_(seed) {
+LightViews::LightViews(const SceneData& scene, std::uint32_t seed)
+    : scene_(scene), bounds_(scene.bounds()), seed_(seed) {
   for (std::size_t i = 0; i < scene.lights.size(); ++i)
     if (luminance(scene.lights[i].intensity) > 0.0F) sources_.push_back({Kind::kPunctual, i});
   for (std::size_t i = 0; i < scene.instances.size(); ++i) {
@@ -83,13 +86,11 @@ std::optional<LightView> LightViews::make(std::size_t index, std::uint32_t sampl
 
 void LightViews::addCube(LightView& view) const {
   view.light.view_count = 6;
-  view.light.grid_size = static_cast<float>(grid_size_);
   for (int face = 0; face < 6; ++face) view.views.push_back(makeCubeView(view.light.position, face, bounds_));
 }
 
 void LightViews::addParallel(LightView& view) const {
   view.light.view_count = 1;
-  view.light.grid_size = static_cast<float>(grid_size_);
   view.views.push_back(makeParallelView(view.light.direction, bounds_));
 }
 
@@ -143,6 +144,15 @@ std::optional<LightView> LightViews::makeMesh(const MeshLight& light, vec2 u) co
   record.normal = normalize(cross(p[1] - p[0], p[2] - p[0]));
   record.position = p[0] + weights.y * (p[1] - p[0]) + weights.z * (p[2] - p[0]);
   record.value = material.emission * static_cast<float>(light.area);
+  if (material.emission_texture.valid()) {
+    const TextureRef& reference = material.emission_texture;
+    const Mesh& mesh = scene_.meshes[instance.mesh];
+    const auto& uvs = mesh.texcoords[reference.texcoord];
+    uvec3 t = mesh.triangles[choice.index];
+    if (isMirrored(instance)) std::swap(t.y, t.z);
+    const vec2 uv = uvs.empty() ? vec2(0.0F) : weights.x * uvs[t.x] + weights.y * uvs[t.y] + weights.z * uvs[t.z];
+    record.value *= vec3(sampleTexture(scene_.images[reference.image], reference, uv, true));
+  }
   record.surface = material.double_sided ? kSurfaceBoth : kSurfaceFront;
   addCube(view);
   return view;

@@ -17,7 +17,7 @@
 namespace nephroid {
 
 struct LightView {
-  LightRecord light;
+  LightRecord light;              ///< its grid not yet
   std::vector<ViewRecord> views;  ///< 1, or 6 of a cube
   bool varies = false;            ///< from sample to sample: else its grid may be kept
 };
@@ -25,8 +25,7 @@ struct LightView {
 class LightViews {
  public:
   /// Keeps a reference to the scene.
-  /// @param grid_size  cells along a side of each view
-  LightViews(const SceneData& scene, std::uint32_t grid_size, std::uint32_t seed);
+  LightViews(const SceneData& scene, std::uint32_t seed);
 
   /// Lights of the scene that shine: as many views has each sample, in the same order.
   std::size_t count() const { return sources_.size(); }
@@ -53,7 +52,7 @@ class LightViews {
 
   const SceneData& scene_;
   Bounds bounds_;
-  std::uint32_t grid_size_, seed_;
+  std::uint32_t seed_;
   std::vector<MeshLight> mesh_lights_;
   std::optional<EnvironmentMap> environment_;
   std::vector<Source> sources_;

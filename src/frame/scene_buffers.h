@@ -1,4 +1,4 @@
-// The scene on the device: tables of vertices, triangles, instances and materials.
+// The scene on the device: tables of triangles, instances, materials and textures, and what the rasteriser fetches.
 #pragma once
 
 #include <cstdint>
@@ -11,48 +11,71 @@
 
 namespace nephroid {
 
-static_assert(sizeof(InstanceRecord) == 64);
-static_assert(sizeof(MaterialRecord) == 88);
-static_assert(sizeof(ViewRecord) == 116);
-static_assert(sizeof(LightRecord) == 72);
+static_assert(sizeof(TriangleRecord) == 48);
+static_assert(sizeof(InstanceRecord) == 80);
+static_assert(sizeof(MaterialRecord) == 128);
+static_assert(sizeof(TextureRecord) == 48);
+static_assert(sizeof(ViewRecord) == 128);
+static_assert(sizeof(LightRecord) == 80);
+static_assert(sizeof(LampRecord) == 64);
 static_assert(sizeof(GridNode) == 48);
 
-/// Bindings 0 to 4 of every pass that reads the scene (frame/scene_access.glsl).
-std::vector<gpu::Binding> sceneBindings();
+/// What the materials of a scene have: shaders leave out the rest.
+struct SceneTraits {
+  bool metal = false, gloss = false, conductors = false;  ///< of lobes of class D
+  bool textures = false;                                  ///< or colours of vertices
+  bool passable = false;                                  ///< panes, cut-outs
+
+  /// Specialisation constants of frame/tables.glsl.
+  std::vector<gpu::Constant> constants() const;
+};
 
 class SceneBuffers {
  public:
-  /// Records the upload. @throws ResourceError
-  SceneBuffers(gpu::Device& device, gpu::CommandRecorder& recorder, const SceneData& scene);
+  /// Bindings 0 to 6 of every pass that reads the scene (frame/tables.glsl).
+  static constexpr std::uint32_t kBindings = 7;
 
-  const gpu::Buffer& instances() const { return instances_; }
-  const gpu::Buffer& materials() const { return materials_; }
+  /// Records the upload.
+  /// @param specular_alpha  finer interfaces are class S
+  /// @throws ResourceError
+  SceneBuffers(gpu::Device& device, gpu::CommandRecorder& recorder, const SceneData& scene, float specular_alpha);
+
   const gpu::Buffer& positions() const { return positions_; }
   const gpu::Buffer& indices() const { return indices_; }
-  /// For passes that bind `sceneBindings()`.
-  std::vector<gpu::Bound> bound() const;
-  std::vector<gpu::Use> uses(gpu::Access access) const;
+  /// `kBindings` of them and, behind, of `types`.
+  static std::vector<gpu::Binding> bindings(std::initializer_list<VkDescriptorType> types);
+  /// What is bound to them.
+  std::vector<gpu::Bound> bound(std::initializer_list<gpu::Bound> more) const;
+  std::vector<gpu::Use> uses(gpu::Access access, std::initializer_list<gpu::Use> more) const;
 
   /// One instance to draw.
   struct Draw {
     std::uint32_t instance = 0;
     std::uint32_t index_count = 0, first_index = 0;
     std::int32_t vertex_offset = 0;
-    Bounds bounds;  ///< world
+    bool passable = false;  ///< light and sight may pass straight through it
+    Bounds bounds;          ///< world
   };
   const std::vector<Draw>& draws() const { return draws_; }
-
-  /// What receivers there are: whether any has a class-D lobe of that kind.
-  struct Receivers {
-    bool metal = false, gloss = false, conductors = false;
-  };
-  /// @param specular_alpha  finer interfaces are class S
-  Receivers inspectReceivers(float specular_alpha) const;
+  const SceneTraits& traits() const { return traits_; }
+  /// For tables and texels: the nearest, unfiltered.
+  const gpu::Sampler& sampler() const { return sampler_; }
 
  private:
-  gpu::Buffer instances_, materials_, positions_, normals_, indices_;
-  std::vector<MaterialRecord> material_records_;
+  void uploadMeshes(gpu::Device& device, gpu::CommandRecorder& recorder, const SceneData& scene);
+  void uploadMaterials(gpu::Device& device, gpu::CommandRecorder& recorder, const SceneData& scene);
+
+  /// Where a mesh lies in the tables.
+  struct MeshPlace {
+    std::uint32_t first_vertex = 0, first_triangle = 0;
+    std::uint32_t texcoords[2] = {kNowhere, kNowhere}, colors = kNowhere, tangents = kNowhere;
+  };
+
+  gpu::Sampler sampler_;
+  gpu::Buffer positions_, indices_;
+  gpu::Image triangles_, instances_, materials_, attributes_, textures_, byte_texels_, float_texels_;
   std::vector<Draw> draws_;
+  SceneTraits traits_;
 };
 
 }  // namespace nephroid

@@ -214,12 +214,17 @@ void PassCommands::copy(const Image& from, const Buffer& to) {
                                      &region);
 }
 
-void PassCommands::fill(const Buffer& buffer, std::uint32_t value) {
-  device_.api().CmdFillBuffer(commands_, buffer.handle(), 0, VK_WHOLE_SIZE, value);
+void PassCommands::fill(const Buffer& buffer, std::uint32_t value, VkDeviceSize offset, VkDeviceSize bytes) {
+  device_.api().CmdFillBuffer(commands_, buffer.handle(), offset, bytes, value);
 }
 
 void PassCommands::clear(const Image& image, const VkClearColorValue& value) {
   const VkImageSubresourceRange range{image.aspect(), 0, image.desc().mips, 0, image.desc().layers};
+  device_.api().CmdClearColorImage(commands_, image.handle(), VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL, &value, 1, &range);
+}
+
+void PassCommands::clearLayer(const Image& image, std::uint32_t layer, const VkClearColorValue& value) {
+  const VkImageSubresourceRange range{image.aspect(), 0, image.desc().mips, layer, 1};
   device_.api().CmdClearColorImage(commands_, image.handle(), VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL, &value, 1, &range);
 }
 

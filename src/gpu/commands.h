@@ -98,8 +98,9 @@ class PassCommands {
   /// All layers of one mip; tightly packed in the buffer.
   void copy(const Buffer& from, const Image& to, std::uint32_t mip = 0);
   void copy(const Image& from, const Buffer& to);
-  void fill(const Buffer& buffer, std::uint32_t value);
+  void fill(const Buffer& buffer, std::uint32_t value, VkDeviceSize offset = 0, VkDeviceSize bytes = VK_WHOLE_SIZE);
   void clear(const Image& image, const VkClearColorValue& value);
+  void clearLayer(const Image& image, std::uint32_t layer, const VkClearColorValue& value);
 
   VkCommandBuffer handle() const { return commands_; }
 

@@ -28,7 +28,7 @@ dvec3 irradianceOf(const LightRecord& light, vec3 place, vec3 normal) {
 }
 
 double meanIrradiance(const SceneData& scene, vec3 place, vec3 normal) {
-  const LightViews views(scene, 64, 7);
+  const LightViews views(scene, 7);
   dvec3 sum(0.0);
   for (std::uint32_t s = 0; s < kSamples; ++s)
     for (std::size_t i = 0; i < views.count(); ++i)
@@ -46,7 +46,7 @@ TEST(LightViews, PointsAndSpotsWithoutASizeAreThemselves) {
   SceneData scene = makeFloorScene();
   scene.lights.push_back(test::makePoint(vec3(0, 2, 0), vec3(8)));
   EXPECT_NEAR(meanIrradiance(scene, vec3(0), vec3(0, 1, 0)), 2.0, 1e-6);
-  EXPECT_FALSE(LightViews(scene, 64, 0).make(0, 5)->varies);
+  EXPECT_FALSE(LightViews(scene, 0).make(0, 5)->varies);
   Light& spot = scene.lights[0];
   spot.kind = LightKind::kSpot;
   spot.inner_cone = 0.1F, spot.outer_cone = 0.3F;

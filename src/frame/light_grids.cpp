@@ -1,0 +1,188 @@
+#include "frame/light_grids.h"
+
+#include <algorithm>
+
+#include "frame/table.h"
+#include "frame/view.h"
+#include "shaders/frame/light_grid.comp.h"
+
+namespace nephroid {
+namespace {
+
+using gpu::Access;
+using gpu::Bound;
+using gpu::PassCommands;
+using gpu::Use;
+
+/// Of the heads of all lights together.
+constexpr std::uint64_t kMaxHeadBytes = std::uint64_t{96} << 20;
+/// Cells along a side of a view: enough for lists to be short, and what no scene needs more of.
+constexpr std::uint32_t kMinGridSize = 32;
+
+/// Pushed by light_grid.comp.
+struct GridPush {
+  std::uint32_t instance, triangle_count, light, first_view, view_count, view_mask, grid_size, first_node,
+      node_capacity;
+};
+
+/// Heads of one light that has six views.
+std::uint64_t headsOf(std::uint32_t grid_size) {
+  const std::uint64_t fine = std::uint64_t{6} * grid_size * grid_size;
+  return fine + fine / (kCoarseCell * kCoarseCell);
+}
+
+std::uint32_t chooseGridSize(std::uint32_t wanted, std::size_t lights) {
+  std::uint32_t size = std::max(wanted / kCoarseCell * kCoarseCell, kCoarseCell);
+  while (size > kMinGridSize && 4 * headsOf(size) * lights > kMaxHeadBytes) size = size / 2 / kCoarseCell * kCoarseCell;
+  return size;
+}
+
+}  // namespace
+
+LightGrids::LightGrids(gpu::Device& device, const SceneData& scene, const SceneBuffers& buffers,
+                       std::uint32_t grid_size, std::uint32_t seed)
+    : device_(device),
+      buffers_(buffers),
+      light_views_(scene, seed),
+      grid_size_(chooseGridSize(grid_size, light_views_.count())),
+      pipeline_(device,
+                {.shader = shaders::light_grid_comp,
+                 .bindings = SceneBuffers::bindings({VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER,
+                                                     VK_DESCRIPTOR_TYPE_STORAGE_IMAGE, VK_DESCRIPTOR_TYPE_STORAGE_IMAGE,
+                                                     VK_DESCRIPTOR_TYPE_STORAGE_BUFFER}),
+                 .push_bytes = sizeof(GridPush),
+                 .constants = buffers.traits().constants()},
+                "light grid"),
+      lights_(light_views_.count()) {
+  const auto layers = static_cast<std::uint32_t>(std::max<std::size_t>(lights_.size(), 1));
+  constexpr std::uint32_t kRow = 1U << kHeadsShift;
+  heads_ = gpu::Image(device,
+                      {.format = VK_FORMAT_R32_UINT,
+                       .width = kRow,
+                       .height = static_cast<std::uint32_t>((headsOf(grid_size_) + kRow - 1) / kRow),
+                       .layers = layers,
+                       .usage = VK_IMAGE_USAGE_STORAGE_BIT | VK_IMAGE_USAGE_SAMPLED_BIT,
+                       .is_array = true},
+                      "heads of lights' grids");
+  counters_ = gpu::Buffer(device, layers * sizeof(std::uint32_t), VK_BUFFER_USAGE_STORAGE_BUFFER_BIT,
+                          gpu::MemoryIntent::kDevice, "counters of lights' grids");
+  // Small triangles lie in one cell or two of one view; if there are more, the first build tells.
+  std::uint32_t triangles = 0;
+  for (const SceneBuffers::Draw& draw : buffers.draws()) triangles += draw.index_count / 3;
+  for (Light& light : lights_) light.node_capacity = 2 * triangles + 16384;
+  allocate();
+}
+
+void LightGrids::allocate() {
+  std::uint64_t nodes = 0;
+  for (Light& light : lights_) {
+    light.first_node = static_cast<std::uint32_t>(nodes);
+    nodes += light.node_capacity;
+    light.built = false;
+  }
+  nodes_ = gpu::Image();
+  nodes_ = makeWrittenTable(device_, nodes * (sizeof(GridNode) / 16), "nodes of lights' grids");
+}
+
+bool LightGrids::makeViews(std::uint32_t sample) {
+  bool changed = false;
+  std::uint32_t first_view = 0;
+  for (std::uint32_t i = 0; i < lights_.size(); ++i) {
+    Light& light = lights_[i];
+    if (!light.built) {
+      const std::optional<LightView> view = light_views_.make(i, sample);
+      light.record = view ? view->light : LightRecord{};
+      light.views = view ? view->views : std::vector<ViewRecord>{};
+      light.varies = !view || view->varies;
+      changed = true;
+    }
+    light.record.first_view = first_view;
+    light.record.grid_size = grid_size_;
+    first_view += static_cast<std::uint32_t>(light.views.size());
+  }
+  return changed || !light_table_.valid();
+}
+
+void LightGrids::uploadTables(gpu::CommandRecorder& recorder) {
+  std::vector<LightRecord> records;
+  std::vector<ViewRecord> views;
+  for (const Light& light : lights_) {
+    records.push_back(light.record);
+    views.insert(views.end(), light.views.begin(), light.views.end());
+  }
+  light_table_ = makeTable<LightRecord>(device_, recorder, records, "lights");
+  view_table_ = makeTable<ViewRecord>(device_, recorder, views, "views of lights");
+}
+
+void LightGrids::update(gpu::CommandRecorder& recorder, std::uint32_t sample, std::vector<gpu::PassTime>& times) {
+  if (!makeViews(sample)) return;
+  do {
+    recorder.begin();
+    uploadTables(recorder);
+    for (std::uint32_t i = 0; i < lights_.size(); ++i)
+      if (!lights_[i].built && !lights_[i].views.empty()) build(recorder, i);
+    recorder.submit();
+    recorder.wait();
+    times.insert(times.end(), recorder.passTimes().begin(), recorder.passTimes().end());
+  } while (!checkCapacity());
+  for (Light& light : lights_) light.built = !light.varies;
+}
+
+void LightGrids::build(gpu::CommandRecorder& recorder, std::uint32_t index) {
+  const Light& light = lights_[index];
+  recorder.pass("clear grid", {Use(heads_, Access::kTransferWrite), Use(counters_, Access::kTransferWrite)},
+                [&](PassCommands& commands) {
+                  commands.clearLayer(heads_, index, {.uint32 = {kNowhere, kNowhere, kNowhere, kNowhere}});
+                  commands.fill(counters_, 0, index * sizeof(std::uint32_t), sizeof(std::uint32_t));
+                });
+  const std::vector<Use> uses =
+      buffers_.uses(Access::kComputeRead, {Use(view_table_, Access::kComputeRead), Use(heads_, Access::kComputeWrite),
+                                           Use(nodes_, Access::kComputeWrite), Use(counters_, Access::kComputeWrite)});
+  recorder.pass("light grid", uses, [&](PassCommands& commands) {
+    commands.bind(pipeline_);
+    commands.bindResources(buffers_.bound(
+        {Bound(7, view_table_, buffers_.sampler()), Bound(8, heads_), Bound(9, nodes_), Bound(10, counters_)}));
+    for (const SceneBuffers::Draw& draw : buffers_.draws()) {
+      std::uint32_t view_mask = 0;
+      for (std::size_t v = 0; v < light.views.size(); ++v)
+        if (mayShow(light.views[v], draw.bounds)) view_mask |= 1U << v;
+      if (view_mask == 0) continue;
+      const std::uint32_t triangles = draw.index_count / 3;
+      commands.pushConstants(GridPush{draw.instance, triangles, index, light.record.first_view, light.record.view_count,
+                                      view_mask, light.record.grid_size, light.first_node, light.node_capacity});
+      commands.dispatch(gpu::groupsOf(triangles, 64));
+    }
+  });
+}
+
+bool LightGrids::checkCapacity() {
+  if (lights_.empty()) return true;
+  const auto counts = gpu::readBackAs<std::uint32_t>(device_, counters_);
+  bool enough = true;
+  for (std::size_t i = 0; i < lights_.size(); ++i) {
+    Light& light = lights_[i];
+    if (light.views.empty() || light.built || counts[i] <= light.node_capacity) continue;
+    // As many again will do if the light stays, and nearly so many if it moves.
+    light.node_capacity = counts[i] + (light.varies ? counts[i] / 4 : 0);
+    enough = false;
+  }
+  if (!enough) allocate();
+  return enough;
+}
+
+std::vector<gpu::Bound> LightGrids::bound(std::uint32_t first) const {
+  const gpu::Sampler& sampler = buffers_.sampler();
+  return {{first, light_table_, sampler},
+          {first + 1, view_table_, sampler},
+          {first + 2, heads_, sampler},
+          {first + 3, nodes_, sampler}};
+}
+
+std::vector<gpu::Use> LightGrids::uses() const {
+  return {{light_table_, Access::kComputeRead},
+          {view_table_, Access::kComputeRead},
+          {heads_, Access::kComputeRead},
+          {nodes_, Access::kComputeRead}};
+}
+
+}  // namespace nephroid

@@ -1,0 +1,61 @@
+// The triangles before each light, by cell of what it sees (light_grid.comp.glsl): what shadows are asked from.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "frame/light_views.h"
+#include "frame/scene_buffers.h"
+#include "gpu/commands.h"
+
+namespace nephroid {
+
+/// Not thread-safe. Device, scene and buffers must outlive it.
+class LightGrids {
+ public:
+  /// @param grid_size  cells along a side of each view; fewer are taken if the lights are many
+  /// @throws ResourceError
+  LightGrids(gpu::Device& device, const SceneData& scene, const SceneBuffers& buffers, std::uint32_t grid_size,
+             std::uint32_t seed);
+
+  /// Makes the views of sample `sample`, and the grids of those lights whose views are new. Submits and waits for what
+  /// it records.
+  /// @param times  the passes' are added to it
+  /// @throws ResourceError
+  void update(gpu::CommandRecorder& recorder, std::uint32_t sample, std::vector<gpu::PassTime>& times);
+
+  /// As many as lights of the scene shine, whether or not in this sample.
+  std::uint32_t lightCount() const { return static_cast<std::uint32_t>(lights_.size()); }
+
+  /// Bindings of frame/lights.glsl, from `first` on.
+  static constexpr std::uint32_t kBindings = 4;
+  std::vector<gpu::Bound> bound(std::uint32_t first) const;
+  std::vector<gpu::Use> uses() const;
+
+ private:
+  struct Light {
+    LightRecord record{};
+    std::vector<ViewRecord> views;
+    std::uint32_t first_node = 0, node_capacity = 0;
+    bool built = false;  ///< and still true
+    bool varies = true;
+  };
+  void allocate();
+  /// @return  whether some view is new
+  bool makeViews(std::uint32_t sample);
+  void uploadTables(gpu::CommandRecorder& recorder);
+  void build(gpu::CommandRecorder& recorder, std::uint32_t index);
+  /// @return  whether all nodes found room; else there is room now
+  bool checkCapacity();
+
+  gpu::Device& device_;
+  const SceneBuffers& buffers_;
+  LightViews light_views_;
+  std::uint32_t grid_size_;
+  gpu::ComputePipeline pipeline_;
+  gpu::Image light_table_, view_table_, heads_, nodes_;
+  gpu::Buffer counters_;
+  std::vector<Light> lights_;
+};
+
+}  // namespace nephroid

@@ -1,0 +1,127 @@
+// One frame's sample of each pixel: `direct` and `emission` of what it shows, added to their sums.
+#version 460
+#extension GL_GOOGLE_include_directive : require
+#extension GL_EXT_scalar_block_layout : require
+#define NEPHROID_LIGHT_BINDINGS 7
+#include "frame/lights.glsl"
+#include "frame/passable.glsl"
+
+layout(local_size_x = 8, local_size_y = 8) in;
+layout(scalar, set = 0, binding = 11) readonly buffer Views { ViewRecord views[]; };
+layout(set = 0, binding = 12) uniform usampler2D seen_image;
+layout(set = 0, binding = 13) uniform sampler2D tint_image;  // of what lies before what is shown
+layout(set = 0, binding = 14) uniform usampler2D lamp_table;
+layout(set = 0, binding = 15) uniform sampler2D environment;
+layout(set = 0, binding = 16, rgba32f) uniform image2D direct_image;    // sum over samples, W/m²/sr
+layout(set = 0, binding = 17, rgba32f) uniform image2D emission_image;  // likewise
+
+layout(push_constant, scalar) uniform Push {
+  vec2 film_offset;  // of the sample in the pixel, in [0, 1)
+  uint frame;
+  uint light_count;
+  uint lamp_count;
+  float specular_alpha;
+  float environment_scale;
+  float cos_rotation;
+  float sin_rotation;
+};
+
+layout(constant_id = 5) const bool kSceneHasEnvironment = true;
+layout(constant_id = 6) const bool kSceneHasLamps = true;  // lights with a size, which are seen
+layout(constant_id = 7) const bool kSceneEmits = true;     // any of its materials
+
+const float kPi = 3.14159265358979;
+
+vec3 environmentFrom(vec3 dir) {
+  float x = dir.x * cos_rotation - dir.z * sin_rotation;
+  float z = dir.x * sin_rotation + dir.z * cos_rotation;
+  float u = x == 0.0 && z == 0.0 ? 0.5 : 0.5 + atan(x, -z) * (0.5 / kPi);
+  float v = acos(clamp(dir.y, -1.0, 1.0)) / kPi;
+  return environment_scale * textureLod(environment, vec2(u, v), 0.0).xyz;
+}
+
+LampRecord fetchLamp(uint i) {
+  vec4 position = uintBitsToFloat(texelFetch(lamp_table, texelOf(4u * i), 0));
+  vec4 radiance = uintBitsToFloat(texelFetch(lamp_table, texelOf(4u * i + 1u), 0));
+  vec4 direction = uintBitsToFloat(texelFetch(lamp_table, texelOf(4u * i + 2u), 0));
+  uvec4 rest = texelFetch(lamp_table, texelOf(4u * i + 3u), 0);
+  return LampRecord(position.xyz, position.w, radiance.xyz, radiance.w, direction.xyz, direction.w,
+                    uintBitsToFloat(rest.x), rest.y, 0u, 0u);
+}
+
+/// A sphere that the ray enters before `t_max`: it shines but hides nothing.
+vec3 sphereSeen(LampRecord lamp, Ray ray, float t_max) {
+  vec3 to_centre = lamp.position - ray.origin;
+  float along = dot(to_centre, ray.dir), squared_radius = lamp.radius * lamp.radius;
+  vec3 beside = to_centre - along * ray.dir;
+  float room = squared_radius - dot(beside, beside);
+  if (along <= 0.0 || dot(to_centre, to_centre) <= squared_radius || room < 0.0) return vec3(0.0);
+  if (along - sqrt(room) >= t_max) return vec3(0.0);
+  float falloff = lamp.is_spot != 0u ? spotFalloff(-dot(ray.dir, lamp.direction), lamp.cos_inner, lamp.cos_outer) : 1.0;
+  return lamp.radiance * falloff;
+}
+
+/// @param t_max  3.4e38 where the ray meets nothing
+vec3 lampsSeen(Ray ray, float t_max) {
+  vec3 sum = vec3(0.0);
+  for (uint i = 0u; i < lamp_count; ++i) {
+    LampRecord lamp = fetchLamp(i);
+    if (lamp.radius > 0.0) {
+      sum += sphereSeen(lamp, ray, t_max);
+    } else {
+      // 1 − cos of the angle from half the squared chord: exact for the small angles of a sun.
+      vec3 chord = ray.dir + lamp.direction;
+      if (t_max == 3.4e38 && 0.5 * dot(chord, chord) <= lamp.one_minus_cos) sum += lamp.radiance;
+    }
+  }
+  return sum;
+}
+
+struct Shaded {
+  vec3 direct;
+  vec3 emission;
+  float t;
+};
+
+Shaded shade(Ray ray, uvec2 seen, uvec2 pixel) {
+  Surface s = surfaceSeen(ray, seen.x - 1u, seen.y);
+  MaterialPoint m = materialAt(s.instance, s.triangle, s.u, s.v);
+  if (kSceneHasTextures) s.shading = perturbedNormal(s);
+  float weight = kSceneHasPassable ? passageAt(s, m, ray.dir, pixel, frame).weight : 1.0;
+  Shaded result = Shaded(vec3(0.0), vec3(0.0), dot(s.position - ray.origin, ray.dir));
+  bool front = dot(ray.dir, s.geometric) < 0.0;
+  if (kSceneEmits && (front || m.double_sided)) result.emission = weight * m.emission;
+  if (!front) {
+    s.geometric = -s.geometric;
+    s.shading = -s.shading;
+  }
+  // Near a silhouette the interpolated normal may look away from the eye: the true one cannot.
+  if (dot(s.shading, -ray.dir) <= 1e-4) s.shading = s.geometric;
+  bool has_interface = m.optics.alpha >= specular_alpha && (kSceneHasMetal || kSceneHasGloss);
+  if (m.base_weight <= 0.0 && !has_interface) return result;
+  for (uint i = 0u; i < light_count; ++i) result.direct += weight * lightFrom(i, s, m, -ray.dir, specular_alpha);
+  return result;
+}
+
+void main() {
+  ivec2 pixel = ivec2(gl_GlobalInvocationID.xy);
+  ivec2 size = imageSize(direct_image);
+  if (pixel.x >= size.x || pixel.y >= size.y) return;
+  Ray ray = rayThrough(views[0], (vec2(pixel) + film_offset) / vec2(size) * 2.0 - 1.0);
+  uvec2 seen = texelFetch(seen_image, pixel, 0).xy;
+  Shaded shaded = Shaded(vec3(0.0), vec3(0.0), 3.4e38);
+  if (seen.x != 0u) {
+    shaded = shade(ray, seen, uvec2(pixel));
+  } else if (kSceneHasEnvironment) {
+    shaded.emission = environmentFrom(ray.dir);
+  }
+  if (kSceneHasLamps) shaded.emission += lampsSeen(ray, shaded.t);
+  if (kSceneHasPassable) {
+    vec3 tint = texelFetch(tint_image, pixel, 0).xyz;
+    shaded.direct *= tint;
+    shaded.emission *= tint;
+  }
+  if (shaded.direct != vec3(0.0)) imageStore(direct_image, pixel, imageLoad(direct_image, pixel) + vec4(shaded.direct, 0.0));
+  if ((kSceneHasEnvironment || kSceneHasLamps || kSceneEmits) && shaded.emission != vec3(0.0))
+    imageStore(emission_image, pixel, imageLoad(emission_image, pixel) + vec4(shaded.emission, 0.0));
+}

@@ -1,0 +1,99 @@
+// From the triangle that a ray meets to the surface there: place, normals, coordinates.
+//
+// The point is where the ray meets the triangle, not what a rasteriser interpolated: the same arithmetic as a ray
+// tracer's, so that both agree to rounding.
+#ifndef NEPHROID_SURFACE_GLSL
+#define NEPHROID_SURFACE_GLSL
+
+#include "frame/tables.glsl"
+#include "frame/ray.glsl"
+
+/// Rounding of an interpolated position, relative to the coordinates that it was computed from: 16 ulp.
+const float kPositionErrorScale = 1.0 / 524288.0;
+
+vec3 toWorld(InstanceRecord instance, vec3 position) {
+  vec4 p = vec4(position, 1.0);
+  return vec3(dot(instance.row_x, p), dot(instance.row_y, p), dot(instance.row_z, p));
+}
+
+/// Normals turn by the cofactors of the matrix, which need no inverse.
+vec3 normalToWorld(InstanceRecord instance, vec3 normal) {
+  vec3 x = instance.row_x.xyz, y = instance.row_y.xyz, z = instance.row_z.xyz;
+  vec3 turned = vec3(dot(cross(y, z), normal), dot(cross(z, x), normal), dot(cross(x, y), normal));
+  return (instance.flags & kInstanceMirrored) != 0u ? -turned : turned;
+}
+
+Triangle toWorld(InstanceRecord instance, TriangleRecord t) {
+  return Triangle(toWorld(instance, t.a), toWorld(instance, t.b), toWorld(instance, t.c));
+}
+
+/// Twice the area along the normal that points out of the solid.
+vec3 areaNormal(InstanceRecord instance, Triangle t) {
+  vec3 normal = cross(t.b - t.a, t.c - t.a);
+  return (instance.flags & kInstanceMirrored) != 0u ? -normal : normal;
+}
+
+/// Bound of the rounding error of a point of the triangle across it, m: new rays start off by so much.
+float boundPositionError(Triangle t, vec3 normal) {
+  vec3 magnitude = max(max(abs(t.a), abs(t.b)), abs(t.c));
+  return kPositionErrorScale * dot(abs(normal), magnitude);
+}
+
+/// Weights of the second and third corner where a ray meets a triangle, or passes it by: a rasteriser rounds corners to
+/// a fraction of a pixel, so it may show what the ray just misses. Weights below zero are then zero, which moves the
+/// point to the edge on the picture; along the plane, which may be seen edge-on, that is any distance.
+vec2 weightsOn(Triangle triangle, Ray ray) {
+  RayTriangle hit = intersectPlaneOf(triangle, ray.origin, ray.dir);
+  vec3 weights = hit.valid ? max(vec3(1.0 - hit.u - hit.v, hit.u, hit.v), vec3(0.0)) : vec3(1.0);
+  float inverse_sum = isInside(hit) ? 1.0 : 1.0 / (weights.x + weights.y + weights.z);
+  return inverse_sum * weights.yz;
+}
+
+struct Surface {
+  InstanceRecord instance;
+  uint instance_index;
+  uint triangle;     // of the mesh
+  Triangle corners;  // world
+  float u;           // weights of the second and third corner
+  float v;
+  vec3 position;         // world
+  float position_error;  // across the surface, m
+  vec3 geometric;        // unit, out of the solid
+  vec3 shading;          // unit, of the vertices' normals; textures not yet
+};
+
+/// @param u, v  weights of the second and third corner
+Surface surfaceAt(uint instance_index, uint triangle, InstanceRecord instance, TriangleRecord record, Triangle corners,
+                  float u, float v) {
+  Surface s;
+  s.instance = instance;
+  s.instance_index = instance_index;
+  s.triangle = triangle;
+  s.corners = corners;
+  s.u = u;
+  s.v = v;
+  s.position = corners.a + u * (corners.b - corners.a) + v * (corners.c - corners.a);
+  vec3 area = areaNormal(instance, corners);
+  float doubled_area = length(area);
+  s.geometric = doubled_area > 0.0 ? area / doubled_area : vec3(0.0, 0.0, 1.0);
+  s.position_error = boundPositionError(corners, s.geometric);
+  vec3 interpolated = (1.0 - u - v) * unpackUnitVector(record.normal_a) + u * unpackUnitVector(record.normal_b) +
+                      v * unpackUnitVector(record.normal_c);
+  interpolated = normalToWorld(instance, interpolated);
+  float squared = dot(interpolated, interpolated);
+  if (squared > 0.0) interpolated *= inversesqrt(squared);
+  bool smooth_shaded = (instance.flags & kInstanceHasNormals) != 0u && dot(interpolated, s.geometric) > 0.0;
+  s.shading = smooth_shaded ? interpolated : s.geometric;
+  return s;
+}
+
+/// Where a ray of the camera meets the triangle that its pixel shows.
+Surface surfaceSeen(Ray ray, uint instance_index, uint triangle) {
+  InstanceRecord instance = fetchInstance(instance_index);
+  TriangleRecord record = fetchTriangle(instance.first_triangle + triangle);
+  Triangle corners = toWorld(instance, record);
+  vec2 weights = weightsOn(corners, ray);
+  return surfaceAt(instance_index, triangle, instance, record, corners, weights.x, weights.y);
+}
+
+#endif
