@@ -123,40 +123,79 @@ RealtimeFrame::RealtimeFrame(gpu::Device& device, const SceneData& scene, const 
       recorder_(device),
       camera_view_(device, sizeof(ViewRecord), VK_BUFFER_USAGE_STORAGE_BUFFER_BIT, gpu::MemoryIntent::kDevice,
                    "camera"),
-      seen_(makePixels(device, settings, kSeenFormat, VK_IMAGE_USAGE_COLOR_ATTACHMENT_BIT | VK_IMAGE_USAGE_SAMPLED_BIT,
-                       "seen")),
-      depth_(makePixels(device, settings, kDepthFormat, VK_IMAGE_USAGE_DEPTH_STENCIL_ATTACHMENT_BIT, "depth")),
-      direct_(makePixels(device, settings, kFloat4, VK_IMAGE_USAGE_STORAGE_BIT, "direct")),
-      emission_(makePixels(device, settings, kFloat4, VK_IMAGE_USAGE_STORAGE_BIT, "emission")),
       environment_sampler_(device, {.address_u = VK_SAMPLER_ADDRESS_MODE_REPEAT}, "environment") {
   recorder_.begin();
   buffers_ = std::make_unique<SceneBuffers>(device, recorder_, scene, settings.specular_alpha);
   uploadEnvironment();
-  const std::vector<LampRecord> lamps = makeLamps(scene);
-  lamp_count_ = static_cast<std::uint32_t>(lamps.size());
-  lamps_ = makeTable<LampRecord>(device, recorder_, lamps, "lamps");
-  makeTint();
+  uploadLamps();
+  makeTargets();
   recorder_.submit();
-  const bool has_environment = scene.environment && scene.environment->radiance;
-  const bool emits = std::ranges::any_of(scene.materials, [](const Material& m) { return m.emits(); });
-  passes_ = std::make_unique<Passes>(device, buffers_->traits(),
-                                     std::vector<gpu::Constant>{{5, has_environment}, {6, !lamps.empty()}, {7, emits}});
+  makePasses();
   light_grids_ = std::make_unique<LightGrids>(device, scene, *buffers_, settings.shadow_size, settings.seed);
   reset();
 }
 
 RealtimeFrame::~RealtimeFrame() = default;
 
-void RealtimeFrame::makeTint() {
+void RealtimeFrame::makeTargets() {
+  constexpr VkImageUsageFlags kDrawn = VK_IMAGE_USAGE_COLOR_ATTACHMENT_BIT | VK_IMAGE_USAGE_SAMPLED_BIT;
+  seen_ = makePixels(device_, settings_, kSeenFormat, kDrawn, "seen");
+  depth_ = makePixels(device_, settings_, kDepthFormat, VK_IMAGE_USAGE_DEPTH_STENCIL_ATTACHMENT_BIT, "depth");
+  direct_ = makePixels(device_, settings_, kFloat4, VK_IMAGE_USAGE_STORAGE_BIT, "direct");
+  emission_ = makePixels(device_, settings_, kFloat4, VK_IMAGE_USAGE_STORAGE_BIT, "emission");
   if (buffers_->traits().passable) {
-    tint_ = makePixels(device_, settings_, kFloat4, VK_IMAGE_USAGE_COLOR_ATTACHMENT_BIT | VK_IMAGE_USAGE_SAMPLED_BIT,
-                       "tint");
-    return;
+    tint_ = makePixels(device_, settings_, kFloat4, kDrawn, "tint");
+  } else if (!tint_.valid()) {
+    // Something has to be bound.
+    tint_ = gpu::Image(device_, {.format = kFloat4, .usage = VK_IMAGE_USAGE_SAMPLED_BIT}, "no tint");
+    const vec4 white(1.0F);
+    recorder_.upload(tint_, std::as_bytes(std::span(&white, 1)));
   }
-  // Something has to be bound.
-  tint_ = gpu::Image(device_, {.format = kFloat4, .usage = VK_IMAGE_USAGE_SAMPLED_BIT}, "no tint");
-  const vec4 white(1.0F);
-  recorder_.upload(tint_, std::as_bytes(std::span(&white, 1)));
+}
+
+void RealtimeFrame::makePasses() {
+  const bool has_environment = scene_.environment && scene_.environment->radiance;
+  const bool emits = std::ranges::any_of(scene_.materials, [](const Material& m) { return m.emits(); });
+  lamps_compiled_ = lamp_count_ > 0;
+  passes_ = std::make_unique<Passes>(
+      device_, buffers_->traits(), std::vector<gpu::Constant>{{5, has_environment}, {6, lamps_compiled_}, {7, emits}});
+}
+
+void RealtimeFrame::uploadLamps() {
+  const std::vector<LampRecord> lamps = makeLamps(scene_);
+  lamp_count_ = static_cast<std::uint32_t>(lamps.size());
+  lamps_ = makeTable<LampRecord>(device_, recorder_, lamps, "lamps");
+}
+
+void RealtimeFrame::setCamera(const Camera& camera) {
+  camera_ = camera;
+  reset();
+}
+
+void RealtimeFrame::resize(int width, int height) {
+  settings_.width = width, settings_.height = height;
+  recorder_.begin();
+  makeTargets();
+  recorder_.submit();
+  reset();
+}
+
+void RealtimeFrame::lightChanged(std::size_t index) {
+  light_grids_->lightChanged(index);
+  recorder_.begin();
+  uploadLamps();
+  recorder_.submit();
+  if (lamp_count_ > 0 && !lamps_compiled_) makePasses();
+  reset();
+}
+
+void RealtimeFrame::objectsMoved() {
+  bounds_ = scene_.bounds();
+  recorder_.begin();
+  buffers_->updateInstances(device_, recorder_, scene_);
+  recorder_.submit();
+  light_grids_->geometryChanged();
+  reset();
 }
 
 void RealtimeFrame::uploadEnvironment() {

@@ -23,13 +23,22 @@ struct FrameSettings {
   std::uint32_t seed = 0;
 };
 
-/// Not thread-safe. Device and scene must outlive it; the scene must not change.
+/// Not thread-safe. Device and scene must outlive it. The scene's owner may edit it between frames if he tells by
+/// `lightChanged` or `objectsMoved`; other changes need a new frame.
 class RealtimeFrame {
  public:
   /// Uploads the scene and makes what all frames need.
   /// @throws ResourceError
   RealtimeFrame(gpu::Device& device, const SceneData& scene, const Camera& camera, const FrameSettings& settings);
   ~RealtimeFrame();
+
+  void setCamera(const Camera& camera);
+  /// @throws ResourceError
+  void resize(int width, int height);
+  /// One of SceneData::lights is another now. Only what its own shadows are asked from is made again.
+  void lightChanged(std::size_t index);
+  /// Instances stand elsewhere now. Uploads where they stand; meshes and materials stay.
+  void objectsMoved();
 
   /// Draws sample `sample` and adds it to the layers that are summed. Waits until the device is done.
   void render(std::uint32_t sample);
@@ -48,7 +57,9 @@ class RealtimeFrame {
   struct Passes;
   struct PassablePush;
   void uploadEnvironment();
-  void makeTint();
+  void uploadLamps();
+  void makeTargets();
+  void makePasses();
   void recordVisibility(vec2 film_offset, std::uint32_t frame, bool geometry_only);
   void recordTint(vec2 film_offset, std::uint32_t frame);
   void recordShade(vec2 film_offset, std::uint32_t frame);
@@ -70,6 +81,7 @@ class RealtimeFrame {
   gpu::Image seen_, depth_, tint_, direct_, emission_, environment_, lamps_;
   gpu::Sampler environment_sampler_;
   std::uint32_t lamp_count_ = 0;
+  bool lamps_compiled_ = false;
   std::vector<gpu::PassTime> times_;
   std::uint32_t samples_ = 0;
 };

@@ -43,8 +43,10 @@ LightGrids::LightGrids(gpu::Device& device, const SceneData& scene, const SceneB
                        std::uint32_t grid_size, std::uint32_t seed)
     : device_(device),
       buffers_(buffers),
-      light_views_(scene, seed),
-      grid_size_(chooseGridSize(grid_size, light_views_.count())),
+      scene_(scene),
+      seed_(seed),
+      light_views_(std::in_place, scene, seed),
+      grid_size_(chooseGridSize(grid_size, light_views_->count())),
       pipeline_(device,
                 {.shader = shaders::light_grid_comp,
                  .bindings = SceneBuffers::bindings({VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER,
@@ -53,7 +55,7 @@ LightGrids::LightGrids(gpu::Device& device, const SceneData& scene, const SceneB
                  .push_bytes = sizeof(GridPush),
                  .constants = buffers.traits().constants()},
                 "light grid"),
-      lights_(light_views_.count()) {
+      lights_(light_views_->count()) {
   const auto layers = static_cast<std::uint32_t>(std::max<std::size_t>(lights_.size(), 1));
   constexpr std::uint32_t kRow = 1U << kHeadsShift;
   heads_ = gpu::Image(device,
@@ -73,6 +75,12 @@ LightGrids::LightGrids(gpu::Device& device, const SceneData& scene, const SceneB
   allocate();
 }
 
+void LightGrids::geometryChanged() {
+  light_views_.emplace(scene_, seed_);
+  lights_.resize(light_views_->count());
+  for (Light& light : lights_) light.built = false;
+}
+
 void LightGrids::allocate() {
   std::uint64_t nodes = 0;
   for (Light& light : lights_) {
@@ -90,7 +98,7 @@ bool LightGrids::makeViews(std::uint32_t sample) {
   for (std::uint32_t i = 0; i < lights_.size(); ++i) {
     Light& light = lights_[i];
     if (!light.built) {
-      const std::optional<LightView> view = light_views_.make(i, sample);
+      const std::optional<LightView> view = light_views_->make(i, sample);
       light.record = view ? view->light : LightRecord{};
       light.views = view ? view->views : std::vector<ViewRecord>{};
       light.varies = !view || view->varies;

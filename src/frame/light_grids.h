@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <vector>
 
 #include "frame/light_views.h"
@@ -24,7 +25,12 @@ class LightGrids {
   /// @throws ResourceError
   void update(gpu::CommandRecorder& recorder, std::uint32_t sample, std::vector<gpu::PassTime>& times);
 
-  /// As many as lights of the scene shine, whether or not in this sample.
+  /// One of SceneData::lights is another now: its grid is made again, and no other.
+  void lightChanged(std::size_t index) { lights_[index].built = false; }
+  /// What casts shadows has moved: all grids are made again.
+  void geometryChanged();
+
+  /// Sources of light, whether or not they shine in this sample.
   std::uint32_t lightCount() const { return static_cast<std::uint32_t>(lights_.size()); }
 
   /// Bindings of frame/lights.glsl, from `first` on.
@@ -50,7 +56,9 @@ class LightGrids {
 
   gpu::Device& device_;
   const SceneBuffers& buffers_;
-  LightViews light_views_;
+  const SceneData& scene_;
+  std::uint32_t seed_;
+  std::optional<LightViews> light_views_;
   std::uint32_t grid_size_;
   gpu::ComputePipeline pipeline_;
   gpu::Image light_table_, view_table_, heads_, nodes_;

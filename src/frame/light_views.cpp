@@ -47,8 +47,7 @@ vec3 sampleSphere(const Bounds& scene, vec3 centre, vec2 u, float& pdf_solid_ang
 
 LightViews::LightViews(const SceneData& scene, std::uint32_t seed)
     : scene_(scene), bounds_(scene.bounds()), seed_(seed) {
-  for (std::size_t i = 0; i < scene.lights.size(); ++i)
-    if (luminance(scene.lights[i].intensity) > 0.0F) sources_.push_back({Kind::kPunctual, i});
+  for (std::size_t i = 0; i < scene.lights.size(); ++i) sources_.push_back({Kind::kPunctual, i});
   for (std::size_t i = 0; i < scene.instances.size(); ++i) {
     const Instance& instance = scene.instances[i];
     if (!scene.materialOf(instance).emits()) continue;
@@ -75,6 +74,7 @@ std::optional<LightView> LightViews::make(std::size_t index, std::uint32_t sampl
   const vec2 u = sampler.next2D();
   switch (source.kind) {
     case Kind::kPunctual:
+      if (!(luminance(scene_.lights[source.index].intensity) > 0.0F)) return std::nullopt;
       return makePunctual(scene_.lights[source.index], u);
     case Kind::kMesh:
       return makeMesh(mesh_lights_[source.index], u);

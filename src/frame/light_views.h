@@ -27,9 +27,9 @@ class LightViews {
   /// Keeps a reference to the scene.
   LightViews(const SceneData& scene, std::uint32_t seed);
 
-  /// Lights of the scene that shine: as many views has each sample, in the same order.
+  /// Sources of light: as many views has each sample, in the same order. Those of SceneData::lights come first.
   std::size_t count() const { return sources_.size(); }
-  /// View `index` of sample `sample`; nothing if it does not shine.
+  /// View `index` of sample `sample`; nothing if it does not shine. Reads the scene's lights as they are now.
   std::optional<LightView> make(std::size_t index, std::uint32_t sample) const;
 
  private:

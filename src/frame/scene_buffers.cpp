@@ -177,15 +177,16 @@ SceneBuffers::SceneBuffers(gpu::Device& device, gpu::CommandRecorder& recorder, 
     : sampler_(device, {.filter = VK_FILTER_NEAREST}, "tables") {
   for (const Material& material : scene.materials) addTraits(traits_, material, specular_alpha);
   uploadMeshes(device, recorder, scene);
+  updateInstances(device, recorder, scene);
   uploadMaterials(device, recorder, scene);
 }
 
 void SceneBuffers::uploadMeshes(gpu::Device& device, gpu::CommandRecorder& recorder, const SceneData& scene) {
-  std::vector<MeshPlace> places(scene.meshes.size());
+  places_.resize(scene.meshes.size());
   std::size_t vertices = 0, triangles = 0;
-  for (std::size_t i = 0; i < places.size(); ++i) {
-    places[i].first_vertex = static_cast<std::uint32_t>(vertices);
-    places[i].first_triangle = static_cast<std::uint32_t>(triangles);
+  for (std::size_t i = 0; i < places_.size(); ++i) {
+    places_[i].first_vertex = static_cast<std::uint32_t>(vertices);
+    places_[i].first_triangle = static_cast<std::uint32_t>(triangles);
     vertices += scene.meshes[i].positions.size();
     triangles += scene.meshes[i].triangles.size();
   }
@@ -193,11 +194,11 @@ void SceneBuffers::uploadMeshes(gpu::Device& device, gpu::CommandRecorder& recor
   std::vector<uvec3> indices(triangles);
   std::vector<TriangleRecord> records(triangles);
   std::vector<vec4> attributes;
-  for (std::size_t i = 0; i < places.size(); ++i) {
+  for (std::size_t i = 0; i < places_.size(); ++i) {
     const Mesh& mesh = scene.meshes[i];
-    std::copy(mesh.positions.begin(), mesh.positions.end(), positions.begin() + places[i].first_vertex);
-    std::copy(mesh.triangles.begin(), mesh.triangles.end(), indices.begin() + places[i].first_triangle);
-    TriangleRecord* first = records.data() + places[i].first_triangle;
+    std::copy(mesh.positions.begin(), mesh.positions.end(), positions.begin() + places_[i].first_vertex);
+    std::copy(mesh.triangles.begin(), mesh.triangles.end(), indices.begin() + places_[i].first_triangle);
+    TriangleRecord* first = records.data() + places_[i].first_triangle;
     parallelFor(mesh.triangles.size(), [&](std::size_t k) {
       const uvec3 t = mesh.triangles[k];
       first[k] = {mesh.positions[t.x],   packNormal(mesh, t.x), mesh.positions[t.y],
@@ -205,17 +206,24 @@ void SceneBuffers::uploadMeshes(gpu::Device& device, gpu::CommandRecorder& recor
     });
     const WantedAttributes wanted = inspectTextures(scene.materials[mesh.material]);
     for (int set = 0; set < 2; ++set)
-      if (wanted.texcoords[set]) places[i].texcoords[set] = appendAttribute(attributes, mesh, mesh.texcoords[set]);
-    places[i].colors = appendAttribute(attributes, mesh, mesh.colors);
-    if (wanted.tangents) places[i].tangents = appendAttribute(attributes, mesh, mesh.tangents);
+      if (wanted.texcoords[set]) places_[i].texcoords[set] = appendAttribute(attributes, mesh, mesh.texcoords[set]);
+    places_[i].colors = appendAttribute(attributes, mesh, mesh.colors);
+    if (wanted.tangents) places_[i].tangents = appendAttribute(attributes, mesh, mesh.tangents);
     traits_.textures = traits_.textures || wanted.texcoords[0] || wanted.texcoords[1] || !mesh.colors.empty();
   }
+  positions_ = gpu::makeBuffer<vec3>(device, recorder, positions, VK_BUFFER_USAGE_VERTEX_BUFFER_BIT, "positions");
+  indices_ = gpu::makeBuffer<uvec3>(device, recorder, indices, VK_BUFFER_USAGE_INDEX_BUFFER_BIT, "indices");
+  triangles_ = makeTable<TriangleRecord>(device, recorder, records, "triangles");
+  attributes_ = makeTable<vec4>(device, recorder, attributes, "attributes");
+}
 
+void SceneBuffers::updateInstances(gpu::Device& device, gpu::CommandRecorder& recorder, const SceneData& scene) {
+  draws_.clear();
   std::vector<InstanceRecord> instances;
   for (std::size_t i = 0; i < scene.instances.size(); ++i) {
     const Instance& instance = scene.instances[i];
     const Mesh& mesh = scene.meshes[instance.mesh];
-    const MeshPlace& place = places[instance.mesh];
+    const MeshPlace& place = places_[instance.mesh];
     const mat4& m = instance.world_from_object;
     InstanceRecord record{.row_x = row(m, 0),
                           .row_y = row(m, 1),
@@ -241,11 +249,7 @@ void SceneBuffers::uploadMeshes(gpu::Device& device, gpu::CommandRecorder& recor
                       .passable = passable,
                       .bounds = bounds});
   }
-  positions_ = gpu::makeBuffer<vec3>(device, recorder, positions, VK_BUFFER_USAGE_VERTEX_BUFFER_BIT, "positions");
-  indices_ = gpu::makeBuffer<uvec3>(device, recorder, indices, VK_BUFFER_USAGE_INDEX_BUFFER_BIT, "indices");
-  triangles_ = makeTable<TriangleRecord>(device, recorder, records, "triangles");
   instances_ = makeTable<InstanceRecord>(device, recorder, instances, "instances");
-  attributes_ = makeTable<vec4>(device, recorder, attributes, "attributes");
 }
 
 void SceneBuffers::uploadMaterials(gpu::Device& device, gpu::CommandRecorder& recorder, const SceneData& scene) {

@@ -40,6 +40,9 @@ class SceneBuffers {
   /// @throws ResourceError
   SceneBuffers(gpu::Device& device, gpu::CommandRecorder& recorder, const SceneData& scene, float specular_alpha);
 
+  /// Records the upload of the instances alone, after some were moved.
+  void updateInstances(gpu::Device& device, gpu::CommandRecorder& recorder, const SceneData& scene);
+
   const gpu::Buffer& positions() const { return positions_; }
   const gpu::Buffer& indices() const { return indices_; }
   /// `kBindings` of them and, behind, of `types`.
@@ -72,6 +75,7 @@ class SceneBuffers {
   };
 
   gpu::Sampler sampler_;
+  std::vector<MeshPlace> places_;  ///< by mesh
   gpu::Buffer positions_, indices_;
   gpu::Image triangles_, instances_, materials_, attributes_, textures_, byte_texels_, float_texels_;
   std::vector<Draw> draws_;
