@@ -143,6 +143,10 @@ void RealtimeFrame::makeTargets() {
   depth_ = makePixels(device_, settings_, kDepthFormat, VK_IMAGE_USAGE_DEPTH_STENCIL_ATTACHMENT_BIT, "depth");
   direct_ = makePixels(device_, settings_, kFloat4, VK_IMAGE_USAGE_STORAGE_BIT, "direct");
   emission_ = makePixels(device_, settings_, kFloat4, VK_IMAGE_USAGE_STORAGE_BIT, "emission");
+  raster_.reset();
+  if (chooseRasteriser(settings_.rasteriser, device_, *buffers_, settings_.width, settings_.height) !=
+      Rasteriser::kHardware)
+    raster_ = std::make_unique<ComputeRaster>(device_, *buffers_, settings_.width, settings_.height);
   if (buffers_->traits().passable) {
     tint_ = makePixels(device_, settings_, kFloat4, kDrawn, "tint");
   } else if (!tint_.valid()) {
@@ -241,13 +245,14 @@ void RealtimeFrame::render(std::uint32_t sample) {
   ++samples_;
 }
 
-void RealtimeFrame::drawScene(PassCommands& commands, const ViewRecord& view, bool passable) {
+void RealtimeFrame::drawScene(PassCommands& commands, const std::vector<std::size_t>& draws) {
   commands.bindResources(buffers_->bound({Bound(7, camera_view_)}));
   commands.bindVertexBuffer(buffers_->positions());
   commands.bindIndexBuffer(buffers_->indices());
-  for (const SceneBuffers::Draw& draw : buffers_->draws())
-    if (draw.passable == passable && mayShow(view, draw.bounds))
-      commands.drawIndexed(draw.index_count, draw.first_index, draw.vertex_offset, 1, draw.instance);
+  for (const std::size_t i : draws) {
+    const SceneBuffers::Draw& draw = buffers_->draws()[i];
+    commands.drawIndexed(draw.index_count, draw.first_index, draw.vertex_offset, 1, draw.instance);
+  }
 }
 
 std::vector<Use> RealtimeFrame::drawUses(std::initializer_list<Use> targets) const {
@@ -261,19 +266,22 @@ std::vector<Use> RealtimeFrame::drawUses(std::initializer_list<Use> targets) con
 void RealtimeFrame::recordVisibility(vec2 film_offset, std::uint32_t frame, bool geometry_only) {
   view_ = makeCameraView(camera_, settings_.width, settings_.height, bounds_, film_offset);
   recorder_.upload(camera_view_, std::as_bytes(std::span(&view_, 1)));
+  split_ = splitDraws(view_, buffers_->draws(), seen_.desc().width * seen_.desc().height,
+                      raster_ ? settings_.rasteriser : Rasteriser::kHardware);
   recorder_.pass("visibility",
                  drawUses({Use(seen_, Access::kColorTarget, true), Use(depth_, Access::kDepthTarget, true)}),
                  [&](PassCommands& commands) {
                    commands.beginRendering({.colors = {{.image = seen_}}, .depth = &depth_});
                    commands.bind(passes_->visibility);
-                   drawScene(commands, view_, false);
+                   drawScene(commands, split_.hardware);
                    if (buffers_->traits().passable) {
                      commands.bind(passes_->passable);
                      commands.pushConstants(passablePush(film_offset, frame, geometry_only));
-                     drawScene(commands, view_, true);
+                     drawScene(commands, split_.passable);
                    }
                    commands.endRendering();
                  });
+  if (!split_.compute.empty()) raster_->record(recorder_, view_, split_.compute, seen_, depth_);
 }
 
 RealtimeFrame::PassablePush RealtimeFrame::passablePush(vec2 film_offset, std::uint32_t frame,
@@ -290,7 +298,7 @@ void RealtimeFrame::recordTint(vec2 film_offset, std::uint32_t frame) {
             {.colors = {{.image = tint_, .value = {.float32 = {1, 1, 1, 1}}}}, .depth = &depth_, .clear_depth = false});
         commands.bind(passes_->tint);
         commands.pushConstants(passablePush(film_offset, frame, false));
-        drawScene(commands, view_, true);
+        drawScene(commands, split_.passable);
         commands.endRendering();
       });
 }

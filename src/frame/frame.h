@@ -11,6 +11,7 @@
 
 #include "core/image/image.h"
 #include "frame/light_grids.h"
+#include "frame/raster.h"
 #include "frame/scene_buffers.h"
 #include "gpu/commands.h"
 
@@ -21,6 +22,7 @@ struct FrameSettings {
   std::uint32_t shadow_size = 256;  ///< cells along a side of each view of a light; bears on speed only
   float specular_alpha = 0.25F;     ///< microfacets finer than this are class S
   std::uint32_t seed = 0;
+  Rasteriser rasteriser = Rasteriser::kAuto;
 };
 
 /// Not thread-safe. Device and scene must outlive it. The scene's owner may edit it between frames if he tells by
@@ -63,7 +65,8 @@ class RealtimeFrame {
   void recordVisibility(vec2 film_offset, std::uint32_t frame, bool geometry_only);
   void recordTint(vec2 film_offset, std::uint32_t frame);
   void recordShade(vec2 film_offset, std::uint32_t frame);
-  void drawScene(gpu::PassCommands& commands, const ViewRecord& view, bool passable);
+  /// @param draws  of the scene, by index
+  void drawScene(gpu::PassCommands& commands, const std::vector<std::size_t>& draws);
   std::vector<gpu::Use> drawUses(std::initializer_list<gpu::Use> targets) const;
   PassablePush passablePush(vec2 film_offset, std::uint32_t frame, bool geometry_only) const;
 
@@ -76,7 +79,9 @@ class RealtimeFrame {
   std::unique_ptr<SceneBuffers> buffers_;
   std::unique_ptr<LightGrids> light_grids_;
   std::unique_ptr<Passes> passes_;
+  std::unique_ptr<ComputeRaster> raster_;  ///< where it is used
   ViewRecord view_{};
+  DrawSplit split_;
   gpu::Buffer camera_view_;
   gpu::Image seen_, depth_, tint_, direct_, emission_, environment_, lamps_;
   gpu::Sampler environment_sampler_;

@@ -39,14 +39,21 @@ float boundPositionError(Triangle t, vec3 normal) {
   return kPositionErrorScale * dot(abs(normal), magnitude);
 }
 
-/// Weights of the second and third corner where a ray meets a triangle, or passes it by: a rasteriser rounds corners to
-/// a fraction of a pixel, so it may show what the ray just misses. Weights below zero are then zero, which moves the
-/// point to the edge on the picture; along the plane, which may be seen edge-on, that is any distance.
-vec2 weightsOn(Triangle triangle, Ray ray) {
-  RayTriangle hit = intersectPlaneOf(triangle, ray.origin, ray.dir);
-  vec3 weights = hit.valid ? max(vec3(1.0 - hit.u - hit.v, hit.u, hit.v), vec3(0.0)) : vec3(1.0);
-  float inverse_sum = isInside(hit) ? 1.0 : 1.0 / (weights.x + weights.y + weights.z);
-  return inverse_sum * weights.yz;
+/// Weights of the corners where a ray meets a triangle or passes it by: a rasteriser rounds corners to a fraction of a
+/// pixel, so it may show what the ray just misses. Then it is the nearest point to the ray of the edge that it misses
+/// most by; where the plane is met may be far from there, if it is seen edge-on.
+vec3 weightsOn(Triangle t, Ray ray) {
+  RayTriangle hit = intersectPlaneOf(t, ray.origin, ray.dir);
+  vec3 weights = vec3(1.0 - hit.u - hit.v, hit.u, hit.v);
+  if (isInside(hit)) return weights;
+  bool misses_a = weights.x <= min(weights.y, weights.z), misses_b = !misses_a && weights.y <= weights.z;
+  vec3 first = misses_a ? t.b : misses_b ? t.c : t.a, second = misses_a ? t.c : misses_b ? t.a : t.b;
+  // Across the ray, where only the distance from it is left.
+  vec3 from = first - ray.origin, edge = second - first;
+  vec3 from_across = from - dot(from, ray.dir) * ray.dir, edge_across = edge - dot(edge, ray.dir) * ray.dir;
+  float squared = dot(edge_across, edge_across);
+  float s = squared > 0.0 ? clamp(-dot(from_across, edge_across) / squared, 0.0, 1.0) : 0.0;
+  return misses_a ? vec3(0.0, 1.0 - s, s) : misses_b ? vec3(s, 0.0, 1.0 - s) : vec3(1.0 - s, s, 0.0);
 }
 
 struct Surface {
@@ -92,8 +99,8 @@ Surface surfaceSeen(Ray ray, uint instance_index, uint triangle) {
   InstanceRecord instance = fetchInstance(instance_index);
   TriangleRecord record = fetchTriangle(instance.first_triangle + triangle);
   Triangle corners = toWorld(instance, record);
-  vec2 weights = weightsOn(corners, ray);
-  return surfaceAt(instance_index, triangle, instance, record, corners, weights.x, weights.y);
+  vec3 weights = weightsOn(corners, ray);
+  return surfaceAt(instance_index, triangle, instance, record, corners, weights.y, weights.z);
 }
 
 #endif

@@ -45,6 +45,8 @@ class Device {
   std::string_view name() const { return properties_.deviceName; }
   /// ms of one tick of a timestamp; 0: there are none.
   double timestampTickMs() const { return timestamp_tick_ms_; }
+  /// A software driver: vertices run on one core, compute on all.
+  bool isCpu() const { return properties_.deviceType == VK_PHYSICAL_DEVICE_TYPE_CPU; }
   bool hasFloatAtomics() const { return float_atomics_; }
 
   /// Names an object for captures and messages; nothing where nobody listens.
