@@ -25,6 +25,9 @@ layout(push_constant, scalar) uniform Push {
   uint grid_size;  // cells along a side of a view
   uint first_node;
   uint node_capacity;
+  vec3 scene_lower;  // bounds of all geometry, world
+  vec3 scene_upper;
+  vec4 source;  // a place of the light, or with w = 0 the direction to it
 };
 
 /// More cells than this, and a triangle is a large one.
@@ -144,11 +147,21 @@ void addToView(uint view, GridNode node) {
   addToCells(o, node, first_list, size, first, last);
 }
 
+/// Does the whole scene lie on the light's side of the triangle? Then it shadows nothing: floors and walls mostly.
+bool isBackdrop(Triangle t) {
+  vec3 normal = cross(t.b - t.a, t.c - t.a);
+  if (dot(normal, source.xyz - source.w * t.a) < 0.0) normal = -normal;
+  // The corner of the bounds that lies farthest behind; they are given by less than they are known by.
+  vec3 behind = mix(scene_lower, scene_upper, lessThan(normal, vec3(0.0)));
+  return dot(normal, behind - t.a) >= -1e-6 * dot(abs(normal), scene_upper - scene_lower);
+}
+
 void main() {
   uint triangle = gl_GlobalInvocationID.x;
   if (triangle >= triangle_count) return;
   InstanceRecord instance = fetchInstance(instance_index);
   Triangle t = toWorld(instance, fetchTriangle(instance.first_triangle + triangle));
+  if (isBackdrop(t)) return;
   uint flagged = instance_index | ((instance.flags & kInstancePassable) != 0u ? kNodePassable : 0u);
   GridNode node = GridNode(t.a, 0u, t.b, flagged, t.c, triangle);
   for (uint v = 0u; v < view_count; ++v)

@@ -23,6 +23,8 @@ constexpr std::uint32_t kMinGridSize = 32;
 struct GridPush {
   std::uint32_t instance, triangle_count, light, first_view, view_count, view_mask, grid_size, first_node,
       node_capacity;
+  vec3 scene_lower, scene_upper;
+  vec4 source;
 };
 
 /// Heads of one light that has six views.
@@ -45,6 +47,7 @@ LightGrids::LightGrids(gpu::Device& device, const SceneData& scene, const SceneB
       buffers_(buffers),
       scene_(scene),
       seed_(seed),
+      bounds_(scene.bounds()),
       light_views_(std::in_place, scene, seed),
       grid_size_(chooseGridSize(grid_size, light_views_->count())),
       pipeline_(device,
@@ -76,6 +79,7 @@ LightGrids::LightGrids(gpu::Device& device, const SceneData& scene, const SceneB
 }
 
 void LightGrids::geometryChanged() {
+  bounds_ = scene_.bounds();
   light_views_.emplace(scene_, seed_);
   lights_.resize(light_views_->count());
   for (Light& light : lights_) light.built = false;
@@ -138,6 +142,8 @@ void LightGrids::update(gpu::CommandRecorder& recorder, std::uint32_t sample, st
 
 void LightGrids::build(gpu::CommandRecorder& recorder, std::uint32_t index) {
   const Light& light = lights_[index];
+  const vec4 source =
+      light.record.kind == kLightDirectional ? vec4(-light.record.direction, 0.0F) : vec4(light.record.position, 1.0F);
   recorder.pass("clear grid", {Use(heads_, Access::kTransferWrite), Use(counters_, Access::kTransferWrite)},
                 [&](PassCommands& commands) {
                   commands.clearLayer(heads_, index, {.uint32 = {kNowhere, kNowhere, kNowhere, kNowhere}});
@@ -157,7 +163,8 @@ void LightGrids::build(gpu::CommandRecorder& recorder, std::uint32_t index) {
       if (view_mask == 0) continue;
       const std::uint32_t triangles = draw.index_count / 3;
       commands.pushConstants(GridPush{draw.instance, triangles, index, light.record.first_view, light.record.view_count,
-                                      view_mask, light.record.grid_size, light.first_node, light.node_capacity});
+                                      view_mask, light.record.grid_size, light.first_node, light.node_capacity,
+                                      bounds_.lower, bounds_.upper, source});
       commands.dispatch(gpu::groupsOf(triangles, 64));
     }
   });

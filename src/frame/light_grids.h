@@ -58,6 +58,7 @@ class LightGrids {
   const SceneBuffers& buffers_;
   const SceneData& scene_;
   std::uint32_t seed_;
+  Bounds bounds_;
   std::optional<LightViews> light_views_;
   std::uint32_t grid_size_;
   gpu::ComputePipeline pipeline_;

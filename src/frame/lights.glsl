@@ -41,15 +41,16 @@ Arriving arriveFrom(LightRecord light, vec3 position) {
     return a;
   }
   vec3 to_light = light.position - position;
-  float squared = dot(to_light, to_light);
-  a.distance = sqrt(squared);
-  a.dir = squared > 0.0 ? to_light / a.distance : vec3(0.0, 1.0, 0.0);
+  float squared = max(dot(to_light, to_light), 1e-37);
+  float inverse = inversesqrt(squared);
+  a.distance = squared * inverse;
+  a.dir = to_light * inverse;
   vec3 intensity = light.value;
   if (light.kind == kLightSpot) intensity *= spotFalloff(-dot(a.dir, light.direction), light.cos_inner, light.cos_outer);
   float cos_surface = -dot(a.dir, light.normal);
   if (light.surface == kSurfaceFront) intensity *= max(cos_surface, 0.0);
   if (light.surface == kSurfaceBoth) intensity *= abs(cos_surface);
-  a.irradiance = squared > 0.0 ? intensity / squared : vec3(0.0);
+  a.irradiance = intensity * (inverse * inverse);
   return a;
 }
 
@@ -89,7 +90,7 @@ bool isBefore(vec3 p, vec3 q) { return p.x != q.x ? p.x < q.x : p.y != q.y ? p.y
 /// along it in opposite directions.
 bool hasEdges(GridNode node, RayTriangle hit) {
   if (hit.v == 0.0 && !isBefore(node.a, node.b)) return false;
-  if (hit.u + hit.v == 1.0 && !isBefore(node.b, node.c)) return false;
+  if (hit.u + hit.v == hit.size && !isBefore(node.b, node.c)) return false;
   return hit.u != 0.0 || isBefore(node.c, node.a);
 }
 
@@ -112,9 +113,9 @@ Shadow walkLists(uvec2 heads, Place place, Arriving light) {
         GridNode(uintBitsToFloat(a.xyz), a.w, uintBitsToFloat(b.xyz), b.w, uintBitsToFloat(c.xyz), c.w);
     bool own = (node.instance & ~kNodePassable) == place.instance && node.triangle == place.triangle;
     RayTriangle hit = intersectPlaneOf(Triangle(node.a, node.b, node.c), place.start, light.dir);
-    if (own || !isInside(hit) || hit.t <= 0.0 || hit.t >= light.distance * (1.0 - 1e-5)) continue;
+    if (own || !isInside(hit) || hit.t <= 0.0 || hit.t >= light.distance * (1.0 - 1e-5) * hit.size) continue;
     if (kSceneHasPassable && (node.instance & kNodePassable) != 0u) {
-      if (hasEdges(node, hit)) shadow = passThrough(shadow, node, hit.u, hit.v, light.dir);
+      if (hasEdges(node, hit)) shadow = passThrough(shadow, node, hit.u / hit.size, hit.v / hit.size, light.dir);
     } else {
       shadow.blocked = true;
     }
@@ -143,7 +144,8 @@ vec3 visibilityOf(uint light_index, LightRecord light, Place place, Arriving arr
   float w = dot(uintBitsToFloat(texelFetch(view_table, texelOf(view + 3u), 0)), p);
   if (w <= 0.0) return vec3(1.0);
   float size = float(light.grid_size);
-  uvec2 cell = uvec2(clamp(floor((vec2(x, y) / w * 0.5 + 0.5) * size), vec2(0.0), vec2(size - 1.0)));
+  vec2 on_grid = vec2(x, y) * (0.5 * size / w) + 0.5 * size;
+  uvec2 cell = uvec2(clamp(floor(on_grid), vec2(0.0), vec2(size - 1.0)));
   uint coarse_size = light.grid_size / kCoarseCell;
   uvec2 coarse = cell / kCoarseCell;
   uint fine_list = (face * light.grid_size + cell.y) * light.grid_size + cell.x;

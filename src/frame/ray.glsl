@@ -22,11 +22,13 @@ struct Triangle {
   vec3 c;
 };
 
+/// Where a ray meets the plane of a triangle, everything times `size`: a division costs a software device as much as ten
+/// products, and whoever only asks whether the triangle is met needs none.
 struct RayTriangle {
-  float t;  // along the ray; of the plane where the triangle is missed
+  float t;  // along the ray
   float u;  // weights of the second and third corner
   float v;
-  bool valid;  // the ray is not parallel to the plane
+  float size;  // >= 0; 0 if the ray is parallel to the plane
 };
 
 /// Möller and Trumbore's test, without its verdict: callers ask for what they need.
@@ -34,17 +36,12 @@ RayTriangle intersectPlaneOf(Triangle triangle, vec3 origin, vec3 dir) {
   vec3 e1 = triangle.b - triangle.a, e2 = triangle.c - triangle.a;
   vec3 p = cross(dir, e2);
   float determinant = dot(e1, p);
-  RayTriangle result = RayTriangle(0.0, 0.0, 0.0, determinant != 0.0);
-  if (!result.valid) return result;
-  float inverse = 1.0 / determinant;
+  float turn = determinant < 0.0 ? -1.0 : 1.0;
   vec3 s = origin - triangle.a;
   vec3 q = cross(s, e1);
-  result.u = dot(s, p) * inverse;
-  result.v = dot(dir, q) * inverse;
-  result.t = dot(e2, q) * inverse;
-  return result;
+  return RayTriangle(turn * dot(e2, q), turn * dot(s, p), turn * dot(dir, q), turn * determinant);
 }
 
-bool isInside(RayTriangle hit) { return hit.valid && hit.u >= 0.0 && hit.v >= 0.0 && hit.u + hit.v <= 1.0; }
+bool isInside(RayTriangle hit) { return hit.size > 0.0 && hit.u >= 0.0 && hit.v >= 0.0 && hit.u + hit.v <= hit.size; }
 
 #endif

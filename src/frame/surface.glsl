@@ -44,8 +44,8 @@ float boundPositionError(Triangle t, vec3 normal) {
 /// most by; where the plane is met may be far from there, if it is seen edge-on.
 vec3 weightsOn(Triangle t, Ray ray) {
   RayTriangle hit = intersectPlaneOf(t, ray.origin, ray.dir);
-  vec3 weights = vec3(1.0 - hit.u - hit.v, hit.u, hit.v);
-  if (isInside(hit)) return weights;
+  vec3 weights = vec3(hit.size - hit.u - hit.v, hit.u, hit.v);
+  if (isInside(hit)) return weights / hit.size;
   bool misses_a = weights.x <= min(weights.y, weights.z), misses_b = !misses_a && weights.y <= weights.z;
   vec3 first = misses_a ? t.b : misses_b ? t.c : t.a, second = misses_a ? t.c : misses_b ? t.a : t.b;
   // Across the ray, where only the distance from it is left.
@@ -81,8 +81,8 @@ Surface surfaceAt(uint instance_index, uint triangle, InstanceRecord instance, T
   s.v = v;
   s.position = corners.a + u * (corners.b - corners.a) + v * (corners.c - corners.a);
   vec3 area = areaNormal(instance, corners);
-  float doubled_area = length(area);
-  s.geometric = doubled_area > 0.0 ? area / doubled_area : vec3(0.0, 0.0, 1.0);
+  float squared_area = dot(area, area);
+  s.geometric = squared_area > 0.0 ? area * inversesqrt(squared_area) : vec3(0.0, 0.0, 1.0);
   s.position_error = boundPositionError(corners, s.geometric);
   vec3 interpolated = (1.0 - u - v) * unpackUnitVector(record.normal_a) + u * unpackUnitVector(record.normal_b) +
                       v * unpackUnitVector(record.normal_c);

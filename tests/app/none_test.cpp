@@ -56,7 +56,7 @@ TEST(NoneTechnique, BenchTellsTimeOfEachPassOfAFrame) {
   EXPECT_NE(json["device"], "cpu");
   bool found = false;
   for (const auto& measurement : json["measurements"]) {
-    if (measurement["name"] != "direct / frame") continue;
+    if (measurement["name"] != "shade / frame") continue;
     found = true;
     EXPECT_EQ(measurement["unit"], "ms");
     EXPECT_EQ(measurement["values"].size(), 2U);

@@ -147,7 +147,8 @@ class NoneRender {
     while (frame_.samples() < budget_ && !stopped() && !(timeIsUp() && frame_.samples() > 0)) {
       const Clock::time_point begin = Clock::now();
       frame_.render(frame_.samples());
-      addTime("whole", secondsSince(begin));
+      frame_seconds_.push_back(secondsSince(begin));
+      addTime("whole", frame_seconds_.back());
       for (const gpu::PassTime& pass : frame_.passTimes()) addTime(pass.name, 1e-3 * pass.ms);
       report();
     }
@@ -194,6 +195,12 @@ class NoneRender {
   }
 
   void describe(RenderResult& result) {
+    if (!frame_seconds_.empty()) {
+      // The first frame builds what the others use.
+      auto middle = frame_seconds_.begin() + static_cast<std::ptrdiff_t>(frame_seconds_.size() / 2);
+      std::nth_element(frame_seconds_.begin(), middle, frame_seconds_.end());
+      stages_.insert(stages_.begin() + 1, {"median", *middle * static_cast<double>(frame_seconds_.size())});
+    }
     // All but the first are sums over the frames.
     for (std::size_t i = 1; i < stages_.size(); ++i) stages_[i].frames = frame_.samples();
     result.stats.stages = stages_;
@@ -237,7 +244,8 @@ class NoneRender {
   Clock::time_point start_;
   RealtimeFrame frame_;
   std::vector<StageTime> stages_;  ///< the first is "build"
-  std::uint64_t budget_ = 0;       ///< samples
+  std::vector<double> frame_seconds_;
+  std::uint64_t budget_ = 0;  ///< samples
   std::optional<Clock::time_point> reported_;
 };
 
