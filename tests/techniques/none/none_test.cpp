@@ -137,7 +137,7 @@ TEST_F(None, SaysWhatItWasMadeFromAndHowLongEachPassTook) {
     EXPECT_EQ(stage.frames, 3U) << stage.name;
   }
   EXPECT_THAT(passes, Contains("visibility"));
-  EXPECT_THAT(passes, Contains("direct"));
+  EXPECT_THAT(passes, Contains("shade"));
 }
 
 TEST_F(None, GeometryIsThatOfTheReference) {
