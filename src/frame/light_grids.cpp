@@ -30,7 +30,7 @@ struct GridPush {
 /// Heads of one light that has six views.
 std::uint64_t headsOf(std::uint32_t grid_size) {
   const std::uint64_t fine = std::uint64_t{6} * grid_size * grid_size;
-  return fine + fine / (kCoarseCell * kCoarseCell);
+  return fine + fine / (std::uint64_t{kCoarseCell} * kCoarseCell);
 }
 
 std::uint32_t chooseGridSize(std::uint32_t wanted, std::size_t lights) {

@@ -122,9 +122,9 @@ template void addValue(CLI::App&, const std::string&, double&, const std::string
 template void addValue(CLI::App&, const std::string&, std::optional<float>&, const std::string&, const OptionText&,
                        const Check&);
 
-void addParsed(CLI::App& app, const std::string& flags, std::function<void(const std::string&)> parse,
+void addParsed(CLI::App& app, const std::string& flags, const std::function<void(const std::string&)>& parse,
                const std::string& value_name, const OptionText& text) {
-  app.add_option_function<std::string>(flags, std::move(parse), describe(text))->type_name(value_name);
+  app.add_option_function<std::string>(flags, parse, describe(text))->type_name(value_name);
 }
 
 void addList(CLI::App& app, const std::string& flags, std::vector<std::string>& target, const std::string& value_name,

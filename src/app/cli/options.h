@@ -46,7 +46,7 @@ void addValue(CLI::App& app, const std::string& flags, T& target, const std::str
               const Check& check = {});
 
 /// An option whose value `parse` takes. @param parse  may throw UsageError
-void addParsed(CLI::App& app, const std::string& flags, std::function<void(const std::string&)> parse,
+void addParsed(CLI::App& app, const std::string& flags, const std::function<void(const std::string&)>& parse,
                const std::string& value_name, const OptionText& text);
 
 /// An option that may be repeated; each time it takes one value.
