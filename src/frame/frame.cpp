@@ -132,6 +132,7 @@ RealtimeFrame::RealtimeFrame(gpu::Device& device, const SceneData& scene, const 
   recorder_.submit();
   makePasses();
   light_grids_ = std::make_unique<LightGrids>(device, scene, *buffers_, settings.shadow_size, settings.seed);
+  if (settings.specular && buffers_->traits().specular.present) makeSpecular();
   reset();
 }
 
@@ -157,12 +158,26 @@ void RealtimeFrame::makeTargets() {
   }
 }
 
-void RealtimeFrame::makePasses() {
+std::vector<gpu::Constant> RealtimeFrame::skyConstants() const {
   const bool has_environment = scene_.environment && scene_.environment->radiance;
   const bool emits = std::ranges::any_of(scene_.materials, [](const Material& m) { return m.emits(); });
+  return {{5, has_environment}, {6, lamp_count_ > 0}, {7, emits}};
+}
+
+void RealtimeFrame::makeSpecular() {
+  specular_.reset();
+  recorder_.begin();
+  if (!tree_) tree_ = std::make_unique<TriangleTree>(device_, recorder_, scene_);
+  const SpecularPass::Inputs inputs{camera_view_,         seen_,         tint_, lamps_, environment_,
+                                    environment_sampler_, *light_grids_, *tree_};
+  specular_ = std::make_unique<SpecularPass>(device_, recorder_, *buffers_, inputs, skyConstants(),
+                                             settings_.specular_alpha, settings_.max_events);
+  recorder_.submit();
+}
+
+void RealtimeFrame::makePasses() {
   lamps_compiled_ = lamp_count_ > 0;
-  passes_ = std::make_unique<Passes>(
-      device_, buffers_->traits(), std::vector<gpu::Constant>{{5, has_environment}, {6, lamps_compiled_}, {7, emits}});
+  passes_ = std::make_unique<Passes>(device_, buffers_->traits(), skyConstants());
 }
 
 void RealtimeFrame::uploadLamps() {
@@ -181,6 +196,7 @@ void RealtimeFrame::resize(int width, int height) {
   recorder_.begin();
   makeTargets();
   recorder_.submit();
+  if (specular_) makeSpecular();
   reset();
 }
 
@@ -189,7 +205,10 @@ void RealtimeFrame::lightChanged(std::size_t index) {
   recorder_.begin();
   uploadLamps();
   recorder_.submit();
-  if (lamp_count_ > 0 && !lamps_compiled_) makePasses();
+  if (lamp_count_ > 0 && !lamps_compiled_) {
+    makePasses();
+    if (specular_) makeSpecular();
+  }
   reset();
 }
 
@@ -199,6 +218,11 @@ void RealtimeFrame::objectsMoved() {
   buffers_->updateInstances(device_, recorder_, scene_);
   recorder_.submit();
   light_grids_->geometryChanged();
+  if (specular_) {
+    specular_.reset();
+    tree_.reset();
+    makeSpecular();
+  }
   reset();
 }
 
@@ -220,11 +244,13 @@ void RealtimeFrame::uploadEnvironment() {
 
 void RealtimeFrame::reset() {
   recorder_.begin();
-  recorder_.pass("clear", {Use(direct_, Access::kTransferWrite, true), Use(emission_, Access::kTransferWrite, true)},
-                 [&](PassCommands& commands) {
-                   commands.clear(direct_, {});
-                   commands.clear(emission_, {});
-                 });
+  std::vector<const gpu::Image*> sums{&direct_, &emission_};
+  if (specular_) sums.push_back(&specular_->sum());
+  std::vector<Use> uses;
+  for (const gpu::Image* sum : sums) uses.emplace_back(*sum, Access::kTransferWrite, true);
+  recorder_.pass("clear", uses, [&](PassCommands& commands) {
+    for (const gpu::Image* sum : sums) commands.clear(*sum, {});
+  });
   recorder_.submit();
   samples_ = 0;
 }
@@ -239,6 +265,7 @@ void RealtimeFrame::render(std::uint32_t sample) {
   recordVisibility(film_offset, sample, false);
   if (buffers_->traits().passable) recordTint(film_offset, sample);
   recordShade(film_offset, sample);
+  if (specular_) recordSpecular(film_offset, sample);
   recorder_.submit();
   recorder_.wait();
   times_.insert(times_.end(), recorder_.passTimes().begin(), recorder_.passTimes().end());
@@ -335,6 +362,13 @@ void RealtimeFrame::recordShade(vec2 film_offset, std::uint32_t frame) {
   });
 }
 
+void RealtimeFrame::recordSpecular(vec2 film_offset, std::uint32_t frame) {
+  const bool present = scene_.environment && scene_.environment->radiance;
+  const float rotation = present ? radians(scene_.environment->rotation_deg) : 0.0F;
+  specular_->record(recorder_, {film_offset, frame, lamp_count_, present ? scene_.environment->scale : 0.0F,
+                                std::cos(rotation), std::sin(rotation)});
+}
+
 namespace {
 
 /// Some channels of four, times `scale`.
@@ -353,7 +387,8 @@ Image takeChannels(gpu::Device& device, const gpu::Image& source, int channels, 
 }  // namespace
 
 Image RealtimeFrame::readSummed(const std::string& layer) {
-  const gpu::Image& sum = layer == "direct" ? direct_ : emission_;
+  if (layer == "specular" && !specular_) return {settings_.width, settings_.height, 3};
+  const gpu::Image& sum = layer == "direct" ? direct_ : layer == "emission" ? emission_ : specular_->sum();
   return takeChannels(device_, sum, 3, 1.0F / static_cast<float>(std::max(samples_, 1U)));
 }
 
@@ -379,11 +414,13 @@ Image RealtimeFrame::readGeometry(const std::string& layer) {
   return takeChannels(device_, target, kind >= 3 ? 1 : 3, 1.0F);
 }
 
-std::vector<std::string> describeFrameLimits(const SceneData& scene) {
-  bool rough_panes = false, panes = false, spheres = false;
+std::vector<std::string> describeFrameLimits(const SceneData& scene, float specular_alpha) {
+  bool rough_panes = false, panes = false, spheres = false, rough = false, solids = false;
   for (const Material& m : scene.materials) {
     const bool pane = m.transmits() && !m.isSolidDielectric();
     panes = panes || pane || m.alpha_mode == AlphaMode::kBlend;
+    solids = solids || m.isSolidDielectric();
+    rough = rough || (m.isSolidDielectric() && m.roughness * m.roughness >= specular_alpha);
     rough_panes = rough_panes || (pane && m.roughness * m.roughness >= kDeltaAlpha);
   }
   for (const Light& light : scene.lights) spheres = spheres || (light.kind != LightKind::kSun && light.radius > 0.0F);
@@ -391,6 +428,10 @@ std::vector<std::string> describeFrameLimits(const SceneData& scene) {
   if (rough_panes) limits.emplace_back("rough panes are opaque: no light and no sight passes through them");
   if (panes && spheres)
     limits.emplace_back("a lamp before a pane has the tint of what is seen through the pane behind it");
+  if (solids)
+    limits.emplace_back(
+        "specular has no caustics and no indirect light on what is seen, and no medium around the camera");
+  if (rough) limits.emplace_back("glass of specular-alpha and above shows nothing of what is behind it");
   return limits;
 }
 

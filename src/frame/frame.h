@@ -10,9 +10,11 @@
 #include <vector>
 
 #include "core/image/image.h"
+#include "core/optics/surface.shared.h"
 #include "frame/light_grids.h"
 #include "frame/raster.h"
 #include "frame/scene_buffers.h"
+#include "frame/specular_pass.h"
 #include "gpu/commands.h"
 
 namespace nephroid {
@@ -21,6 +23,8 @@ struct FrameSettings {
   int width = 1024, height = 768;
   std::uint32_t shadow_size = 256;  ///< cells along a side of each view of a light; bears on speed only
   float specular_alpha = 0.25F;     ///< microfacets finer than this are class S
+  bool specular = true;             ///< makes that layer, which takes longer than all others
+  std::uint32_t max_events = 12;    ///< of class S, in what is seen in mirrors and through glass
   std::uint32_t seed = 0;
   Rasteriser rasteriser = Rasteriser::kAuto;
 };
@@ -50,7 +54,7 @@ class RealtimeFrame {
   /// Of the last frame, by pass; those of lights' grids come first.
   const std::vector<gpu::PassTime>& passTimes() const { return times_; }
 
-  /// Mean of a layer over the samples since `reset`: "direct", "emission".
+  /// Mean of a layer over the samples since `reset`: "direct", "emission", "specular".
   Image readSummed(const std::string& layer);
   /// A layer of the geometry at the pixels' centres: "albedo", "normal", "position", "depth", "id".
   Image readGeometry(const std::string& layer);
@@ -62,9 +66,13 @@ class RealtimeFrame {
   void uploadLamps();
   void makeTargets();
   void makePasses();
+  void makeSpecular();
+  /// Of frame/sky.glsl: what the camera may see that is no receiver.
+  std::vector<gpu::Constant> skyConstants() const;
   void recordVisibility(vec2 film_offset, std::uint32_t frame, bool geometry_only);
   void recordTint(vec2 film_offset, std::uint32_t frame);
   void recordShade(vec2 film_offset, std::uint32_t frame);
+  void recordSpecular(vec2 film_offset, std::uint32_t frame);
   /// @param draws  of the scene, by index
   void drawScene(gpu::PassCommands& commands, const std::vector<std::size_t>& draws);
   std::vector<gpu::Use> drawUses(std::initializer_list<gpu::Use> targets) const;
@@ -79,7 +87,9 @@ class RealtimeFrame {
   std::unique_ptr<SceneBuffers> buffers_;
   std::unique_ptr<LightGrids> light_grids_;
   std::unique_ptr<Passes> passes_;
-  std::unique_ptr<ComputeRaster> raster_;  ///< where it is used
+  std::unique_ptr<ComputeRaster> raster_;   ///< where it is used
+  std::unique_ptr<TriangleTree> tree_;      ///< null: nothing is specular
+  std::unique_ptr<SpecularPass> specular_;  ///< null: nothing is specular
   ViewRecord view_{};
   DrawSplit split_;
   gpu::Buffer camera_view_;
@@ -92,6 +102,6 @@ class RealtimeFrame {
 };
 
 /// What the scene asks for and the frame does not do yet, a sentence each.
-std::vector<std::string> describeFrameLimits(const SceneData& scene);
+std::vector<std::string> describeFrameLimits(const SceneData& scene, float specular_alpha = kDefaultSpecularAlpha);
 
 }  // namespace nephroid

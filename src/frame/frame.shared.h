@@ -33,7 +33,7 @@ struct InstanceRecord {
   uint first_triangle;
   uint material;
   uint flags;  // kInstance…
-  uint pad;
+  uint solid;  // instances of one object and one material bound one solid together
   // Where in the table of attributes those of the first triangle lie; kNowhere. A triangle has two texels of
   // coordinates, three of colours, three of tangents.
   uint texcoords_0;
@@ -68,7 +68,10 @@ struct MaterialRecord {
   uint transmission_texture;
   uint specular_texture;
   uint specular_color_texture;
-  uint pad;
+  int priority;  // where solids overlap
+  // Of what a solid is filled with.
+  vec3 sigma_a;      // 1/m
+  float dispersion;  // 20 / Abbe number
 };
 
 NEPHROID_CONST uint kMaterialHasConductor = 1u;
@@ -76,6 +79,7 @@ NEPHROID_CONST uint kMaterialIsSolid = 2u;
 NEPHROID_CONST uint kMaterialDoubleSided = 4u;  // of emission only
 NEPHROID_CONST uint kMaterialIsMask = 8u;       // alpha decides whether the surface is there
 NEPHROID_CONST uint kMaterialIsBlend = 16u;     // alpha is how much of it is there
+NEPHROID_CONST uint kMaterialIsSpecular = 32u;  // has a lobe of class S, or textures may give it one
 
 /// How a material uses an image.
 struct TextureRecord {
@@ -124,7 +128,7 @@ struct LightRecord {
   uint view_count;  // 6: a cube of views along ±x, ±y, ±z; 1; 0: it does not shine
   uint first_view;
   uint grid_size;  // cells along a side of each view
-  uint pad;
+  uint has_size;   // 1: this is one point of it, or one direction
 };
 
 NEPHROID_CONST uint kLightPoint = 0u;
@@ -161,6 +165,24 @@ struct GridNode {
 };
 
 NEPHROID_CONST uint kNodePassable = 0x80000000u;
+
+/// A box of the tree of triangles: see frame/triangle_tree.h.
+struct TreeNode {
+  vec3 lower;  // world
+  uint skip;   // the node where a walk goes on that misses the box; their number at the end
+  vec3 upper;
+  uint leaf;  // first triangle · 4 + how many; kNowhere: the next node is the first inside
+};
+
+/// A triangle of the tree, world.
+struct TreeTriangle {
+  vec3 a;
+  uint instance;
+  vec3 b;
+  uint triangle;
+  vec3 c;
+  uint pad;
+};
 
 /// Cells of the fine grid along a side of one of the coarse grid, where the lists of large triangles are.
 NEPHROID_CONST uint kCoarseCell = 8u;

@@ -106,6 +106,7 @@ bool LightGrids::makeViews(std::uint32_t sample) {
       light.record = view ? view->light : LightRecord{};
       light.views = view ? view->views : std::vector<ViewRecord>{};
       light.varies = !view || view->varies;
+      light.record.has_size = view && view->varies ? 1 : 0;
       changed = true;
     }
     light.record.first_view = first_view;

@@ -36,7 +36,7 @@ Arriving arriveFrom(LightRecord light, vec3 position) {
   Arriving a;
   if (light.kind == kLightDirectional) {
     a.dir = -light.direction;
-    a.distance = 3.4e38;
+    a.distance = kFarAway;
     a.irradiance = light.value;
     return a;
   }

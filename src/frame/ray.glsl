@@ -4,6 +4,9 @@
 
 #include "frame/frame.shared.h"
 
+/// Length of a ray that meets nothing.
+const float kFarAway = 3.4e38;
+
 struct Ray {
   vec3 origin;
   vec3 dir;  // unit

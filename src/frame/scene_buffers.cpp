@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <map>
+#include <utility>
 
 #include "core/optics/fresnel_average.h"
 #include "core/optics/photon.shared.h"
@@ -83,7 +85,15 @@ class TexelTables {
   std::vector<vec4> floats_;
 };
 
-MaterialRecord describeMaterial(const Material& m, TexelTables& texels) {
+/// May some of it be an interface of class S, which reflects or lets through?
+bool isSpecular(const Material& m, float specular_alpha) {
+  const float roughness = std::clamp(m.roughness, 0.0F, 1.0F);
+  const bool fine = roughness * roughness < specular_alpha || m.metallic_roughness_texture.valid();
+  const bool varnished = m.specular_factor > 0.0F && m.ior != 1.0F;
+  return fine && (m.metallic > 0.0F || m.transmits() || varnished);
+}
+
+MaterialRecord describeMaterial(const Material& m, TexelTables& texels, float specular_alpha) {
   MaterialRecord record{};
   record.base = m.base_color;
   record.emission = m.emission;
@@ -102,6 +112,7 @@ MaterialRecord describeMaterial(const Material& m, TexelTables& texels) {
   if (m.double_sided) record.flags |= kMaterialDoubleSided;
   if (m.alpha_mode == AlphaMode::kMask) record.flags |= kMaterialIsMask;
   if (m.alpha_mode == AlphaMode::kBlend) record.flags |= kMaterialIsBlend;
+  if (isSpecular(m, specular_alpha)) record.flags |= kMaterialIsSpecular;
   record.alpha_cutoff = m.alpha_cutoff;
   record.normal_scale = m.normal_scale;
   record.base_texture = texels.add(m.base_color_texture);
@@ -111,6 +122,9 @@ MaterialRecord describeMaterial(const Material& m, TexelTables& texels) {
   record.transmission_texture = texels.add(m.transmission_texture);
   record.specular_texture = texels.add(m.specular_texture);
   record.specular_color_texture = texels.add(m.specular_color_texture);
+  record.priority = m.priority;
+  record.sigma_a = m.sigmaA();
+  record.dispersion = m.dispersion;
   return record;
 }
 
@@ -127,6 +141,15 @@ void addTraits(SceneTraits& traits, const Material& m, float specular_alpha) {
   traits.metal = traits.metal || (m.metallic > 0.0F && (has_base || has_interface));
   traits.conductors = traits.conductors || m.conductor_ior.has_value();
   traits.passable = traits.passable || isPassable(m);
+
+  SpecularTraits& s = traits.specular;
+  s.metal = s.metal || m.metallic > 0.0F;
+  s.transmits = s.transmits || m.transmits();
+  s.media = s.media || (m.isSolidDielectric() && m.sigmaA() != vec3(0.0F));
+  s.disperses = s.disperses || (m.isSolidDielectric() && m.dispersion > 0.0F);
+  if (!isSpecular(m, specular_alpha)) return;
+  s.present = true;
+  s.rough = s.rough || m.metallic_roughness_texture.valid() || alpha >= kDeltaAlpha;
 }
 
 /// One value of each corner of each triangle; `floats` of them, padded to whole texels for all three together.
@@ -178,7 +201,7 @@ SceneBuffers::SceneBuffers(gpu::Device& device, gpu::CommandRecorder& recorder, 
   for (const Material& material : scene.materials) addTraits(traits_, material, specular_alpha);
   uploadMeshes(device, recorder, scene);
   updateInstances(device, recorder, scene);
-  uploadMaterials(device, recorder, scene);
+  uploadMaterials(device, recorder, scene, specular_alpha);
 }
 
 void SceneBuffers::uploadMeshes(gpu::Device& device, gpu::CommandRecorder& recorder, const SceneData& scene) {
@@ -220,20 +243,24 @@ void SceneBuffers::uploadMeshes(gpu::Device& device, gpu::CommandRecorder& recor
 void SceneBuffers::updateInstances(gpu::Device& device, gpu::CommandRecorder& recorder, const SceneData& scene) {
   draws_.clear();
   std::vector<InstanceRecord> instances;
+  std::map<std::pair<std::uint32_t, std::uint32_t>, std::uint32_t> solids;
   for (std::size_t i = 0; i < scene.instances.size(); ++i) {
     const Instance& instance = scene.instances[i];
     const Mesh& mesh = scene.meshes[instance.mesh];
     const MeshPlace& place = places_[instance.mesh];
     const mat4& m = instance.world_from_object;
-    InstanceRecord record{.row_x = row(m, 0),
-                          .row_y = row(m, 1),
-                          .row_z = row(m, 2),
-                          .first_triangle = place.first_triangle,
-                          .material = mesh.material,
-                          .texcoords_0 = place.texcoords[0],
-                          .texcoords_1 = place.texcoords[1],
-                          .colors = place.colors,
-                          .tangents = place.tangents};
+    InstanceRecord record{
+        .row_x = row(m, 0),
+        .row_y = row(m, 1),
+        .row_z = row(m, 2),
+        .first_triangle = place.first_triangle,
+        .material = mesh.material,
+        .solid = solids.try_emplace({instance.object, mesh.material}, static_cast<std::uint32_t>(solids.size()))
+                     .first->second,
+        .texcoords_0 = place.texcoords[0],
+        .texcoords_1 = place.texcoords[1],
+        .colors = place.colors,
+        .tangents = place.tangents};
     const bool passable = isPassable(scene.materialOf(instance));
     if (glm::determinant(mat3(m)) < 0.0F) record.flags |= kInstanceMirrored;
     if (!mesh.normals.empty()) record.flags |= kInstanceHasNormals;
@@ -252,10 +279,12 @@ void SceneBuffers::updateInstances(gpu::Device& device, gpu::CommandRecorder& re
   instances_ = makeTable<InstanceRecord>(device, recorder, instances, "instances");
 }
 
-void SceneBuffers::uploadMaterials(gpu::Device& device, gpu::CommandRecorder& recorder, const SceneData& scene) {
+void SceneBuffers::uploadMaterials(gpu::Device& device, gpu::CommandRecorder& recorder, const SceneData& scene,
+                                   float specular_alpha) {
   TexelTables texels(scene.images);
   std::vector<MaterialRecord> records;
-  for (const Material& material : scene.materials) records.push_back(describeMaterial(material, texels));
+  for (const Material& material : scene.materials)
+    records.push_back(describeMaterial(material, texels, specular_alpha));
   materials_ = makeTable<MaterialRecord>(device, recorder, records, "materials");
   textures_ = makeTable<TextureRecord>(device, recorder, texels.records(), "textures");
   byte_texels_ = makeTexelTable(device, recorder, VK_FORMAT_R8G8B8A8_UNORM, std::as_bytes(std::span(texels.bytes())),

@@ -13,18 +13,29 @@ namespace nephroid {
 
 static_assert(sizeof(TriangleRecord) == 48);
 static_assert(sizeof(InstanceRecord) == 80);
-static_assert(sizeof(MaterialRecord) == 128);
+static_assert(sizeof(MaterialRecord) == 144);
 static_assert(sizeof(TextureRecord) == 48);
 static_assert(sizeof(ViewRecord) == 128);
 static_assert(sizeof(LightRecord) == 80);
 static_assert(sizeof(LampRecord) == 64);
 static_assert(sizeof(GridNode) == 48);
 
+/// What the materials of a scene have that bears on lobes of class S.
+struct SpecularTraits {
+  bool present = false;    ///< any
+  bool metal = false;      ///< of any material
+  bool rough = false;      ///< not all are mirrors
+  bool transmits = false;  ///< panes, solids
+  bool media = false;      ///< that absorb
+  bool disperses = false;
+};
+
 /// What the materials of a scene have: shaders leave out the rest.
 struct SceneTraits {
   bool metal = false, gloss = false, conductors = false;  ///< of lobes of class D
   bool textures = false;                                  ///< or colours of vertices
   bool passable = false;                                  ///< panes, cut-outs
+  SpecularTraits specular;
 
   /// Specialisation constants of frame/tables.glsl.
   std::vector<gpu::Constant> constants() const;
@@ -66,7 +77,8 @@ class SceneBuffers {
 
  private:
   void uploadMeshes(gpu::Device& device, gpu::CommandRecorder& recorder, const SceneData& scene);
-  void uploadMaterials(gpu::Device& device, gpu::CommandRecorder& recorder, const SceneData& scene);
+  void uploadMaterials(gpu::Device& device, gpu::CommandRecorder& recorder, const SceneData& scene,
+                       float specular_alpha);
 
   /// Where a mesh lies in the tables.
   struct MeshPlace {

@@ -31,6 +31,7 @@ InstanceRecord fetchInstance(uint i) {
   r.first_triangle = w.x;
   r.material = w.y;
   r.flags = w.z;
+  r.solid = w.w;
   uvec4 attributes = uvec4(kNowhere);
   if (kSceneHasTextures) attributes = texelFetch(instance_table, texelOf(5u * i + 4u), 0);
   r.texcoords_0 = attributes.x;
@@ -50,29 +51,29 @@ TriangleRecord fetchTriangle(uint i) {
 
 MaterialRecord fetchMaterial(uint i) {
   MaterialRecord m;
-  m.base = uintBitsToFloat(texelFetch(material_table, texelOf(8u * i), 0));
-  vec4 emission = uintBitsToFloat(texelFetch(material_table, texelOf(8u * i + 1u), 0));
+  m.base = uintBitsToFloat(texelFetch(material_table, texelOf(9u * i), 0));
+  vec4 emission = uintBitsToFloat(texelFetch(material_table, texelOf(9u * i + 1u), 0));
   m.emission = emission.xyz;
   m.metallic = emission.w;
-  vec4 tint = uintBitsToFloat(texelFetch(material_table, texelOf(8u * i + 2u), 0));
+  vec4 tint = uintBitsToFloat(texelFetch(material_table, texelOf(9u * i + 2u), 0));
   m.specular_tint = tint.xyz;
   m.roughness = tint.w;
-  uvec4 transmission = texelFetch(material_table, texelOf(8u * i + 3u), 0);
+  uvec4 transmission = texelFetch(material_table, texelOf(9u * i + 3u), 0);
   m.transmission = uintBitsToFloat(transmission.x);
   m.ior = uintBitsToFloat(transmission.y);
   m.average_fresnel = uintBitsToFloat(transmission.z);
   m.flags = transmission.w;
   vec4 ior = vec4(0.0), k = vec4(0.0);
-  if (kSceneHasConductors || kSceneHasPassable) ior = uintBitsToFloat(texelFetch(material_table, texelOf(8u * i + 4u), 0));
-  if (kSceneHasConductors || kSceneHasTextures) k = uintBitsToFloat(texelFetch(material_table, texelOf(8u * i + 5u), 0));
+  if (kSceneHasConductors || kSceneHasPassable) ior = uintBitsToFloat(texelFetch(material_table, texelOf(9u * i + 4u), 0));
+  if (kSceneHasConductors || kSceneHasTextures) k = uintBitsToFloat(texelFetch(material_table, texelOf(9u * i + 5u), 0));
   m.conductor_ior = ior.xyz;
   m.alpha_cutoff = ior.w;
   m.conductor_k = k.xyz;
   m.normal_scale = k.w;
   uvec4 first = uvec4(kNowhere), second = uvec4(kNowhere);
   if (kSceneHasTextures) {
-    first = texelFetch(material_table, texelOf(8u * i + 6u), 0);
-    second = texelFetch(material_table, texelOf(8u * i + 7u), 0);
+    first = texelFetch(material_table, texelOf(9u * i + 6u), 0);
+    second = texelFetch(material_table, texelOf(9u * i + 7u), 0);
   }
   m.base_texture = first.x;
   m.metallic_roughness_texture = first.y;
@@ -81,7 +82,27 @@ MaterialRecord fetchMaterial(uint i) {
   m.transmission_texture = second.x;
   m.specular_texture = second.y;
   m.specular_color_texture = second.z;
+  // What fills it is asked for by fetchMedium.
+  m.priority = 0;
+  m.sigma_a = vec3(0.0);
+  m.dispersion = 0.0;
   return m;
+}
+
+/// What a solid of a material is filled with.
+struct Medium {
+  float ior;
+  float dispersion;
+  vec3 sigma_a;  // 1/m
+  int priority;
+};
+
+/// @param material  kNowhere: vacuum
+Medium fetchMedium(uint material) {
+  if (material == kNowhere) return Medium(1.0, 0.0, vec3(0.0), 0);
+  vec4 absorbs = uintBitsToFloat(texelFetch(material_table, texelOf(9u * material + 8u), 0));
+  return Medium(uintBitsToFloat(texelFetch(material_table, texelOf(9u * material + 3u), 0).y), absorbs.w, absorbs.xyz,
+                int(texelFetch(material_table, texelOf(9u * material + 7u), 0).w));
 }
 
 TextureRecord fetchTexture(uint i) {

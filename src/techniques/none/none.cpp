@@ -31,7 +31,7 @@ constexpr std::uint64_t kMaxSamples = std::numeric_limits<std::uint32_t>::max();
 /// Between two reports of progress: frames may be much shorter.
 constexpr double kReportInterval_s = 0.1;
 
-constexpr std::array<std::string_view, 2> kSummedLayers{"direct", "emission"};
+constexpr std::array<std::string_view, 3> kSummedLayers{"direct", "emission", "specular"};
 constexpr std::array<std::string_view, 5> kGeometryLayers{"albedo", "normal", "position", "depth", "id"};
 
 template <std::size_t N>
@@ -120,6 +120,9 @@ FrameSettings makeFrameSettings(const RenderSettings& settings) {
           .height = settings.height,
           .shadow_size = static_cast<std::uint32_t>(settings.params.getInt("shadow-size")),
           .specular_alpha = settings.params.getFloat("specular-alpha"),
+          .specular = std::ranges::any_of(settings.layers,
+                                          [](const std::string& l) { return l == "beauty" || l == "specular"; }),
+          .max_events = static_cast<std::uint32_t>(settings.params.getInt("max-events")),
           .seed = foldSeed(settings.seed)};
 }
 
@@ -188,9 +191,11 @@ class NoneRender {
     if (contains(kGeometryLayers, name)) return frame_.readGeometry(name);
     if (contains(kSummedLayers, name)) return frame_.readSummed(name);
     if (name != "beauty") return {settings_.width, settings_.height, findLayerInfo(name).channels};
-    Image sum = frame_.readSummed("direct");
-    const Image emission = frame_.readSummed("emission");
-    for (std::size_t i = 0; i < sum.pixels.size(); ++i) sum.pixels[i] += emission.pixels[i];
+    Image sum(settings_.width, settings_.height, 3);
+    for (const std::string_view summed : kSummedLayers) {
+      const Image layer = frame_.readSummed(std::string(summed));
+      for (std::size_t i = 0; i < sum.pixels.size(); ++i) sum.pixels[i] += layer.pixels[i];
+    }
     return sum;
   }
 
@@ -233,7 +238,7 @@ class NoneRender {
     if (!missing.empty()) metadata["not_made"] = fmt::format("{}", fmt::join(missing, ","));
     if (!asked("beauty")) return;
     metadata["not_in_beauty"] = fmt::format("{}", fmt::join(missing_from_beauty, ","));
-    result.notes.push_back(fmt::format("beauty is direct and emission alone: technique none makes no {}",
+    result.notes.push_back(fmt::format("beauty is {} alone: technique none makes no {}", fmt::join(kSummedLayers, ", "),
                                        fmt::join(missing_from_beauty, ", ")));
   }
 
@@ -262,7 +267,8 @@ RenderResult renderNone(const SceneData& scene, const Camera& camera, const Rend
     open.keepPipelines();
     result = render.run();
   }
-  for (std::string& limit : describeFrameLimits(scene)) result.notes.push_back(std::move(limit));
+  for (std::string& limit : describeFrameLimits(scene, settings.params.getFloat("specular-alpha")))
+    result.notes.push_back(std::move(limit));
   open.checkValidation();
   return result;
 }
@@ -273,8 +279,8 @@ Technique makeNoneTechnique() {
   Technique technique;
   technique.name = "none";
   technique.text =
-      "the real-time frame without any caustic, on a Vulkan device: direct, emission and the geometry's layers; what "
-      "the real-time techniques add their caustics to";
+      "the real-time frame without any caustic, on a Vulkan device: direct, emission, specular and the geometry's "
+      "layers; what the real-time techniques add their caustics to";
   technique.source = "Burns & Hunt 2013; Appel 1968";
   technique.on_vulkan = true;
   technique.params = {
@@ -285,6 +291,13 @@ Technique makeNoneTechnique() {
        kMaxShadowSize,
        "cells",
        "along a side of each view from a light, in which shadows look for what casts them; bears on speed only",
+       {}},
+      {"max-events",
+       static_cast<int>(FrameSettings{}.max_events),
+       1,
+       256,
+       "",
+       "reflections and refractions in a row that are followed in what mirrors and glass show",
        {}},
   };
   technique.render = renderNone;

@@ -1,0 +1,58 @@
+// The layer `specular` of a frame: what mirrors, glass and water show, followed surface by surface.
+//
+// Two passes over pixels: one lists those that show an interface of class S, the other follows chains of surfaces from
+// each of them through the tree of triangles.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "frame/light_grids.h"
+#include "frame/scene_buffers.h"
+#include "frame/triangle_tree.h"
+#include "gpu/commands.h"
+
+namespace nephroid {
+
+/// What a sample of the frame is made with, where it bears on what is seen in mirrors and through glass.
+struct SpecularSample {
+  vec2 film_offset;  ///< of the sample in the pixel, in [0, 1)
+  std::uint32_t frame, lamp_count;
+  float environment_scale, cos_rotation, sin_rotation;
+};
+
+/// Not thread-safe. What it is made from must outlive it.
+class SpecularPass {
+ public:
+  /// Of the frame, which makes them before.
+  struct Inputs {
+    const gpu::Buffer& camera_view;
+    const gpu::Image &seen, &tint, &lamps, &environment;
+    const gpu::Sampler& environment_sampler;
+    const LightGrids& grids;
+    const TriangleTree& tree;
+  };
+
+  /// Records the upload of tables. @param sky  constants of frame/sky.glsl: what may be seen that is no receiver
+  /// @throws ResourceError
+  SpecularPass(gpu::Device& device, gpu::CommandRecorder& recorder, const SceneBuffers& buffers, const Inputs& inputs,
+               const std::vector<gpu::Constant>& sky, float specular_alpha, std::uint32_t max_events);
+
+  /// Adds a sample to the sum, once the frame's visibility is drawn.
+  void record(gpu::CommandRecorder& recorder, const SpecularSample& sample);
+  /// Sum over samples, W/m²/sr.
+  const gpu::Image& sum() const { return sum_; }
+
+ private:
+  void recordList(gpu::CommandRecorder& recorder);
+
+  const SceneBuffers& buffers_;
+  Inputs inputs_;
+  float specular_alpha_;
+  std::uint32_t max_events_;
+  gpu::ComputePipeline list_, follow_;
+  gpu::Image bands_, sum_;
+  gpu::Buffer pixels_;
+};
+
+}  // namespace nephroid

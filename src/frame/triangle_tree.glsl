@@ -1,0 +1,70 @@
+// What a ray of any origin and direction meets first, by a tree of boxes (frame/triangle_tree.h).
+//
+// The including shader gives the two bindings from NEPHROID_TREE_BINDINGS on, and declares before, among what is pushed
+// to it: tree_nodes, tree_orders.
+#ifndef NEPHROID_TRIANGLE_TREE_GLSL
+#define NEPHROID_TRIANGLE_TREE_GLSL
+
+#include "frame/tables.glsl"
+#include "frame/ray.glsl"
+
+layout(set = 0, binding = NEPHROID_TREE_BINDINGS) uniform usampler2D tree_node_table;
+layout(set = 0, binding = NEPHROID_TREE_BINDINGS + 1) uniform usampler2D tree_triangle_table;
+
+struct Met {
+  float t;  // kFarAway: nothing
+  float u;  // weights of the second and third corner
+  float v;
+  uint instance;  // kNowhere: nothing
+  uint triangle;
+};
+
+/// Weights of corners below zero by as much are on the triangle: else a ray may slip between two of them.
+const float kEdgeSlack = 1e-6;
+
+/// Does a ray meet a box before `t_max`?
+bool meetsBox(vec3 lower, vec3 upper, vec3 origin, vec3 inverse_dir, float t_max) {
+  vec3 a = (lower - origin) * inverse_dir, b = (upper - origin) * inverse_dir;
+  vec3 near = min(a, b), far = max(a, b);
+  float enters = max(max(near.x, near.y), max(near.z, 0.0));
+  return enters <= min(min(far.x, far.y), min(far.z, t_max)) * (1.0 + 1e-6);
+}
+
+/// The first triangle that a ray meets but its own.
+/// @param ray  starts a hair off its own triangle
+Met meetFirst(Ray ray, uint own_instance, uint own_triangle) {
+  Met best = Met(kFarAway, 0.0, 0.0, kNowhere, 0u);
+  // The box of a plane across a coordinate in which the ray does not move is met at no time, or at all.
+  vec3 dir = mix(ray.dir, vec3(1e-18), lessThan(abs(ray.dir), vec3(1e-18)));
+  vec3 inverse_dir = 1.0 / dir;
+  uvec3 below = uvec3(lessThan(dir, vec3(0.0)));
+  uint first = tree_orders == 8u ? (below.x + 2u * below.y + 4u * below.z) * tree_nodes : 0u;
+  uint node = 0u, triangle = 0u, triangles_left = 0u;
+  // One box and one triangle a turn, so that of the threads that go in step each always has something to do.
+  while (node < tree_nodes || triangles_left > 0u) {
+    if (triangles_left == 0u) {
+      uvec4 lower = texelFetch(tree_node_table, texelOf(2u * (first + node)), 0);
+      uvec4 upper = texelFetch(tree_node_table, texelOf(2u * (first + node) + 1u), 0);
+      bool met = meetsBox(uintBitsToFloat(lower.xyz), uintBitsToFloat(upper.xyz), ray.origin, inverse_dir, best.t);
+      bool is_leaf = upper.w != kNowhere;
+      node = met ? node + 1u : lower.w;
+      triangle = upper.w >> 2;
+      triangles_left = met && is_leaf ? upper.w & 3u : 0u;
+    }
+    if (triangles_left > 0u) {
+      uvec4 a = texelFetch(tree_triangle_table, texelOf(3u * triangle), 0);
+      uvec4 b = texelFetch(tree_triangle_table, texelOf(3u * triangle + 1u), 0);
+      uvec4 c = texelFetch(tree_triangle_table, texelOf(3u * triangle + 2u), 0);
+      ++triangle;
+      --triangles_left;
+      RayTriangle hit = intersectPlaneOf(
+          Triangle(uintBitsToFloat(a.xyz), uintBitsToFloat(b.xyz), uintBitsToFloat(c.xyz)), ray.origin, ray.dir);
+      bool inside = hit.size > 0.0 && min(min(hit.u, hit.v), hit.size - hit.u - hit.v) >= -kEdgeSlack * hit.size;
+      bool own = a.w == own_instance && b.w == own_triangle;
+      if (!own && inside && hit.t > 0.0 && hit.t < best.t * hit.size) best = Met(hit.t / hit.size, hit.u / hit.size, hit.v / hit.size, a.w, b.w);
+    }
+  }
+  return best;
+}
+
+#endif
