@@ -57,11 +57,15 @@ LightGrids::LightGrids(gpu::Device& device, const SceneData& scene, const SceneB
                                                      VK_DESCRIPTOR_TYPE_STORAGE_BUFFER}),
                  .push_bytes = sizeof(GridPush),
                  .constants = buffers.traits().constants()},
-                "light grid"),
-      lights_(light_views_->count()) {
-  const auto layers = static_cast<std::uint32_t>(std::max<std::size_t>(lights_.size(), 1));
+                "light grid") {
+  makeHeads();
+  allocate();
+}
+
+void LightGrids::makeHeads() {
+  const auto layers = static_cast<std::uint32_t>(std::max<std::size_t>(light_views_->count(), 1));
   constexpr std::uint32_t kRow = 1U << kHeadsShift;
-  heads_ = gpu::Image(device,
+  heads_ = gpu::Image(device_,
                       {.format = VK_FORMAT_R32_UINT,
                        .width = kRow,
                        .height = static_cast<std::uint32_t>((headsOf(grid_size_) + kRow - 1) / kRow),
@@ -69,20 +73,24 @@ LightGrids::LightGrids(gpu::Device& device, const SceneData& scene, const SceneB
                        .usage = VK_IMAGE_USAGE_STORAGE_BIT | VK_IMAGE_USAGE_SAMPLED_BIT,
                        .is_array = true},
                       "heads of lights' grids");
-  counters_ = gpu::Buffer(device, layers * sizeof(std::uint32_t), VK_BUFFER_USAGE_STORAGE_BUFFER_BIT,
+  counters_ = gpu::Buffer(device_, layers * sizeof(std::uint32_t), VK_BUFFER_USAGE_STORAGE_BUFFER_BIT,
                           gpu::MemoryIntent::kDevice, "counters of lights' grids");
   // Small triangles lie in one cell or two of one view; if there are more, the first build tells.
   std::uint32_t triangles = 0;
-  for (const SceneBuffers::Draw& draw : buffers.draws()) triangles += draw.index_count / 3;
-  for (Light& light : lights_) light.node_capacity = 2 * triangles + 16384;
-  allocate();
+  for (const SceneBuffers::Draw& draw : buffers_.draws()) triangles += draw.index_count / 3;
+  Light unbuilt;
+  unbuilt.node_capacity = 2 * triangles + 16384;
+  lights_.assign(light_views_->count(), unbuilt);
 }
 
 void LightGrids::geometryChanged() {
   bounds_ = scene_.bounds();
   light_views_.emplace(scene_, seed_);
-  lights_.resize(light_views_->count());
   for (Light& light : lights_) light.built = false;
+  if (light_views_->count() == lights_.size()) return;
+  // A lamp that was scaled to nothing is one no more, and may come back.
+  makeHeads();
+  allocate();
 }
 
 void LightGrids::allocate() {

@@ -46,6 +46,8 @@ class LightGrids {
     bool built = false;  ///< and still true
     bool varies = true;
   };
+  /// Room for as many lights as there are, none of them built.
+  void makeHeads();
   void allocate();
   /// @return  whether some view is new
   bool makeViews(std::uint32_t sample);

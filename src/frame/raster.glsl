@@ -135,7 +135,7 @@ FilmTriangle projectTriangle(Corners c) {
 }
 
 /// Of any corners: the film's edges are planes through the eye, so nothing needs to be cut off.
-/// @see Olano and Greer 1997, triangle scan conversion using 2D homogeneous coordinates
+/// @see [olano-greer-1997]
 FilmTriangle projectUncut(Corners c) {
   precise FilmTriangle t;
   t.origin = vec2(0.0);

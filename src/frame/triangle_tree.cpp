@@ -82,7 +82,8 @@ class Builder {
     return index;
   }
 
-  /// Where the boxes of both sides, by the number in each, are least likely to be met; items are sorted by side.
+  /// By bins along the longest axis ([wald-2007]): where the boxes of both sides, by the number in each, are least
+  /// likely to be met; items are sorted by side.
   std::size_t split(std::size_t first, std::size_t end, const Box& middles, int& axis) {
     const vec3 size = middles.upper - middles.lower;
     axis = size.x >= size.y && size.x >= size.z ? 0 : size.y >= size.z ? 1 : 2;

@@ -76,6 +76,21 @@ TEST_F(ChangesTest, MovedObjectsStandAndShadeWhereTheyAre) {
   EXPECT_EQ(frame.readSummed("direct").pixels, renderAnew(scene, lookAtBall(), kSmall).pixels);
 }
 
+TEST_F(ChangesTest, ALampThatWasScaledToNothingComesBack) {
+  SceneData scene = makeBalls();
+  Material glow = test::makeDiffuse(vec3(0.0F));
+  glow.emission = vec3(9);
+  const std::uint32_t lamp =
+      test::addObject(scene, makeRectangle("lamp", dvec3(0, 3, 0), dvec3(1, 0, 0), dvec3(0, 0, 1)), glow, mat4(0.0F));
+  scene.instances[lamp].world_from_object[3][3] = 1.0F;
+  RealtimeFrame frame(device(), scene, lookAtBall(), kSmall);
+  frame.render(0);
+  scene.instances[lamp].world_from_object = mat4(1.0F);
+  frame.objectsMoved();
+  frame.render(0);
+  EXPECT_EQ(frame.readSummed("direct").pixels, renderAnew(scene, lookAtBall(), kSmall).pixels);
+}
+
 TEST_F(ChangesTest, CamerasTurnAndPicturesChangeTheirSize) {
   const SceneData scene = makeBalls();
   RealtimeFrame frame(device(), scene, lookAtBall(), kSmall);
