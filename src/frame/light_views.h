@@ -17,7 +17,7 @@
 namespace nephroid {
 
 struct LightView {
-  LightRecord light;              ///< its grid not yet
+  LightRecord light{};            ///< its grid not yet
   std::vector<ViewRecord> views;  ///< 1, or 6 of a cube
   bool varies = false;            ///< from sample to sample: else its grid may be kept
 };

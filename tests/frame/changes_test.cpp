@@ -105,6 +105,14 @@ TEST_F(ChangesTest, CamerasTurnAndPicturesChangeTheirSize) {
   EXPECT_EQ(direct.pixels, renderAnew(scene, other, {.width = 17, .height = 40}).pixels);
 }
 
+TEST_F(ChangesTest, APictureGrowsBeforeItIsDrawn) {
+  const SceneData scene = makeBalls();
+  RealtimeFrame frame(device(), scene, lookAtBall(), {.width = 1, .height = 1});
+  frame.resize(64, 48);
+  frame.render(0);
+  EXPECT_EQ(frame.readSummed("direct").pixels, renderAnew(scene, lookAtBall(), {.width = 64, .height = 48}).pixels);
+}
+
 TEST_F(ChangesTest, PicturesOf4096By2160) {
   const SceneData scene = makeBalls();
   RealtimeFrame frame(device(), scene, lookAtBall(), {.width = 4096, .height = 2160});
