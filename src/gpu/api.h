@@ -50,6 +50,7 @@ namespace nephroid::gpu {
   X(CmdBindIndexBuffer)                 \
   X(CmdBindPipeline)                    \
   X(CmdBindVertexBuffers)               \
+  X(CmdBlitImage)                       \
   X(CmdClearColorImage)                 \
   X(CmdCopyBuffer)                      \
   X(CmdCopyBufferToImage)               \

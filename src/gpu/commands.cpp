@@ -214,6 +214,18 @@ void PassCommands::copy(const Image& from, const Buffer& to) {
                                      &region);
 }
 
+void PassCommands::blit(const Image& from, const Image& to) {
+  const auto corner = [](const Image& image) {
+    return VkOffset3D{static_cast<std::int32_t>(image.desc().width), static_cast<std::int32_t>(image.desc().height), 1};
+  };
+  const VkImageBlit region{.srcSubresource = {from.aspect(), 0, 0, 1},
+                           .srcOffsets = {{0, 0, 0}, corner(from)},
+                           .dstSubresource = {to.aspect(), 0, 0, 1},
+                           .dstOffsets = {{0, 0, 0}, corner(to)}};
+  device_.api().CmdBlitImage(commands_, from.handle(), VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL, to.handle(),
+                             VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL, 1, &region, VK_FILTER_NEAREST);
+}
+
 void PassCommands::fill(const Buffer& buffer, std::uint32_t value, VkDeviceSize offset, VkDeviceSize bytes) {
   device_.api().CmdFillBuffer(commands_, buffer.handle(), offset, bytes, value);
 }
@@ -312,7 +324,7 @@ void CommandRecorder::barrier(std::span<const Use> uses) {
                       .srcQueueFamilyIndex = VK_QUEUE_FAMILY_IGNORED,
                       .dstQueueFamilyIndex = VK_QUEUE_FAMILY_IGNORED,
                       .image = image.handle(),
-                      .subresourceRange = {image.aspect(), 0, image.desc().mips, 0, image.desc().layers}});
+                      .subresourceRange = {image.allAspects(), 0, image.desc().mips, 0, image.desc().layers}});
   }
   if (!memory_needed && images.empty()) return;
   const VkDependencyInfo info{.sType = VK_STRUCTURE_TYPE_DEPENDENCY_INFO,
@@ -320,6 +332,29 @@ void CommandRecorder::barrier(std::span<const Use> uses) {
                               .pMemoryBarriers = &memory,
                               .imageMemoryBarrierCount = static_cast<std::uint32_t>(images.size()),
                               .pImageMemoryBarriers = images.data()};
+  device_.api().CmdPipelineBarrier2(commands_, &info);
+}
+
+void CommandRecorder::handOver(const Image& image, VkImageLayout layout) {
+  const VkImageLayout before = image.state().layout;
+  const Wait wait = advance(
+      image.state(),
+      {VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT, VK_ACCESS_2_MEMORY_READ_BIT | VK_ACCESS_2_MEMORY_WRITE_BIT, layout, true},
+      layout);
+  const VkImageMemoryBarrier2 barrier{
+      .sType = VK_STRUCTURE_TYPE_IMAGE_MEMORY_BARRIER_2,
+      .srcStageMask = wait.stages,
+      .srcAccessMask = wait.access,
+      .dstStageMask = VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT,
+      .dstAccessMask = VK_ACCESS_2_MEMORY_READ_BIT | VK_ACCESS_2_MEMORY_WRITE_BIT,
+      .oldLayout = before,
+      .newLayout = layout,
+      .srcQueueFamilyIndex = VK_QUEUE_FAMILY_IGNORED,
+      .dstQueueFamilyIndex = VK_QUEUE_FAMILY_IGNORED,
+      .image = image.handle(),
+      .subresourceRange = {image.allAspects(), 0, image.desc().mips, 0, image.desc().layers}};
+  const VkDependencyInfo info{
+      .sType = VK_STRUCTURE_TYPE_DEPENDENCY_INFO, .imageMemoryBarrierCount = 1, .pImageMemoryBarriers = &barrier};
   device_.api().CmdPipelineBarrier2(commands_, &info);
 }
 

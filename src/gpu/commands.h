@@ -98,6 +98,8 @@ class PassCommands {
   /// All layers of one mip; tightly packed in the buffer.
   void copy(const Buffer& from, const Image& to, std::uint32_t mip = 0);
   void copy(const Image& from, const Buffer& to);
+  /// The first layer and mip, stretched to fit, converted to the other's format.
+  void blit(const Image& from, const Image& to);
   void fill(const Buffer& buffer, std::uint32_t value, VkDeviceSize offset = 0, VkDeviceSize bytes = VK_WHOLE_SIZE);
   void clear(const Image& image, const VkClearColorValue& value);
   void clearLayer(const Image& image, std::uint32_t layer, const VkClearColorValue& value);
@@ -139,6 +141,8 @@ class CommandRecorder {
   /// Copies bytes to a buffer or (tightly packed, all layers, first mip) to an image before what is recorded next.
   void upload(const Buffer& to, std::span<const std::byte> bytes, VkDeviceSize offset = 0);
   void upload(const Image& to, std::span<const std::byte> bytes);
+  /// Leaves a foreign image in `layout`, for whatever its owner does with it next on this queue.
+  void handOver(const Image& image, VkImageLayout layout);
   /// Makes what a buffer of MemoryIntent::kReadback was given visible to the host after `wait`.
   void submit();
   /// Until the device is done with what was submitted.

@@ -37,7 +37,13 @@ Device::Device(const ForeignDevice& foreign)
       queue_family_(foreign.queue_family) {
   try {
     finishCreation(instance_api_, foreign.physical);
-    timestamp_tick_ms_ = static_cast<double>(properties_.limits.timestampPeriod) * 1e-6;
+    // Not every queue counts time.
+    std::uint32_t count = 0;
+    instance_api_.GetPhysicalDeviceQueueFamilyProperties(foreign.physical, &count, nullptr);
+    std::vector<VkQueueFamilyProperties> families(count);
+    instance_api_.GetPhysicalDeviceQueueFamilyProperties(foreign.physical, &count, families.data());
+    if (queue_family_ < count && families[queue_family_].timestampValidBits > 0)
+      timestamp_tick_ms_ = static_cast<double>(properties_.limits.timestampPeriod) * 1e-6;
   } catch (...) {
     destroy();
     throw;
@@ -71,6 +77,7 @@ void Device::create(const DeviceInfo& info) {
 }
 
 void Device::finishCreation(const InstanceApi& instance, VkPhysicalDevice physical) {
+  physical_ = physical;
   instance.GetPhysicalDeviceProperties(physical, &properties_);
   memory_ = std::make_unique<MemoryAllocator>(instance, physical, api_, handle_);
   const VkSemaphoreTypeCreateInfo timeline{.sType = VK_STRUCTURE_TYPE_SEMAPHORE_TYPE_CREATE_INFO,
@@ -78,6 +85,12 @@ void Device::finishCreation(const InstanceApi& instance, VkPhysicalDevice physic
   const VkSemaphoreCreateInfo create{.sType = VK_STRUCTURE_TYPE_SEMAPHORE_CREATE_INFO, .pNext = &timeline};
   check(api_.CreateSemaphore(handle_, &create, nullptr, &timeline_), "creating a semaphore");
   makePipelineCache(nullptr, 0);
+}
+
+VkFormatFeatureFlags Device::featuresOf(VkFormat format) const {
+  VkFormatProperties properties;
+  instance_api_.GetPhysicalDeviceFormatProperties(physical_, format, &properties);
+  return properties.optimalTilingFeatures;
 }
 
 void Device::destroy() {

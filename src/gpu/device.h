@@ -47,6 +47,8 @@ class Device {
   double timestampTickMs() const { return timestamp_tick_ms_; }
   /// A software driver: vertices run on one core, compute on all.
   bool isCpu() const { return properties_.deviceType == VK_PHYSICAL_DEVICE_TYPE_CPU; }
+  /// What images of that format, tiled as the driver likes, can be used for.
+  VkFormatFeatureFlags featuresOf(VkFormat format) const;
   bool hasFloatAtomics() const { return float_atomics_; }
 
   /// Names an object for captures and messages; nothing where nobody listens.
@@ -75,6 +77,7 @@ class Device {
 
   InstanceApi instance_api_;
   DeviceApi api_;
+  VkPhysicalDevice physical_ = VK_NULL_HANDLE;
   VkDevice handle_ = VK_NULL_HANDLE;
   bool owned_ = true;
   VkQueue queue_ = VK_NULL_HANDLE;

@@ -68,6 +68,15 @@ std::vector<VkExtensionProperties> listExtensions(const InstanceApi& api, VkPhys
   return extensions;
 }
 
+/// Larger is better.
+int rankOf(const DeviceInfo& device) {
+  if (device.kind == "discrete GPU") return 3;
+  if (device.kind == "integrated GPU") return 2;
+  return device.kind == "CPU" ? 0 : 1;
+}
+
+}  // namespace
+
 DeviceInfo describeDevice(const InstanceApi& api, VkPhysicalDevice device) {
   DeviceInfo info;
   info.handle = device;
@@ -107,15 +116,6 @@ DeviceInfo describeDevice(const InstanceApi& api, VkPhysicalDevice device) {
   info.timestamp_period_ns = timestamps ? properties.limits.timestampPeriod : 0.0F;
   return info;
 }
-
-/// Larger is better.
-int rankOf(const DeviceInfo& device) {
-  if (device.kind == "discrete GPU") return 3;
-  if (device.kind == "integrated GPU") return 2;
-  return device.kind == "CPU" ? 0 : 1;
-}
-
-}  // namespace
 
 std::vector<DeviceInfo> listDevices(const Instance& instance) {
   const InstanceApi& api = instance.api();

@@ -11,6 +11,7 @@ struct VkPhysicalDevice_T;  // by name, so that whoever only reads a list needs 
 namespace nephroid::gpu {
 
 class Instance;
+struct InstanceApi;
 
 struct DeviceInfo {
   VkPhysicalDevice_T* handle = nullptr;  ///< a VkPhysicalDevice; valid as long as its instance
@@ -27,6 +28,9 @@ struct DeviceInfo {
 
   bool usable() const { return missing.empty(); }
 };
+
+/// One of an instance that need not be ours.
+DeviceInfo describeDevice(const InstanceApi& api, VkPhysicalDevice_T* device);
 
 /// All devices, in the order in which Vulkan lists them: `--device N` counts from 0.
 std::vector<DeviceInfo> listDevices(const Instance& instance);

@@ -10,7 +10,15 @@
 namespace nephroid::gpu {
 namespace {
 
-bool isDepth(VkFormat format) { return format == VK_FORMAT_D32_SFLOAT || format == VK_FORMAT_D16_UNORM; }
+bool hasStencil(VkFormat format) {
+  return format == VK_FORMAT_D16_UNORM_S8_UINT || format == VK_FORMAT_D24_UNORM_S8_UINT ||
+         format == VK_FORMAT_D32_SFLOAT_S8_UINT;
+}
+
+bool isDepth(VkFormat format) {
+  return format == VK_FORMAT_D32_SFLOAT || format == VK_FORMAT_D16_UNORM || format == VK_FORMAT_X8_D24_UNORM_PACK32 ||
+         hasStencil(format);
+}
 
 /// For a handle of any kind; on 64-bit systems they are pointers.
 template <class Handle>
@@ -128,7 +136,34 @@ Image::Image(Device& device, const ImageDesc& desc, std::string_view name)
   }
 }
 
+Image::Image(Device& device, VkImage foreign, const ImageDesc& desc, VkImageLayout layout)
+    : device_(&device),
+      handle_(foreign),
+      owned_(false),
+      aspect_(isDepth(desc.format) ? VK_IMAGE_ASPECT_DEPTH_BIT : VK_IMAGE_ASPECT_COLOR_BIT),
+      desc_(desc) {
+  // What was done to it is not known: everything.
+  state_ = {.write_stages = VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT,
+            .write_access = VK_ACCESS_2_MEMORY_WRITE_BIT,
+            .layout = layout};
+  try {
+    makeViews();
+  } catch (...) {
+    destroyNow();
+    throw;
+  }
+}
+
+VkImageAspectFlags Image::allAspects() const {
+  return hasStencil(desc_.format) ? aspect_ | VK_IMAGE_ASPECT_STENCIL_BIT : aspect_;
+}
+
 void Image::makeViews() {
+  // An image that is only copied to may have no views.
+  constexpr VkImageUsageFlags kViewed = VK_IMAGE_USAGE_SAMPLED_BIT | VK_IMAGE_USAGE_STORAGE_BIT |
+                                        VK_IMAGE_USAGE_COLOR_ATTACHMENT_BIT |
+                                        VK_IMAGE_USAGE_DEPTH_STENCIL_ATTACHMENT_BIT;
+  if ((desc_.usage & kViewed) == 0) return;
   const bool array = desc_.is_array || desc_.layers > 1;
   const VkImageViewType whole = array ? VK_IMAGE_VIEW_TYPE_2D_ARRAY : VK_IMAGE_VIEW_TYPE_2D;
   view_ = makeView(desc_.is_cube ? VK_IMAGE_VIEW_TYPE_CUBE : whole, desc_.mips, 0, desc_.layers);
@@ -151,24 +186,26 @@ VkImageView Image::makeView(VkImageViewType type, std::uint32_t mips, std::uint3
 
 namespace {
 
+/// @param handle  null: only the views
 void destroyImage(const Device& device, VkImage handle, std::span<const VkImageView> views) {
   for (const VkImageView view : views)
     if (view) device.api().DestroyImageView(device.handle(), view, nullptr);
-  device.api().DestroyImage(device.handle(), handle, nullptr);
+  if (handle) device.api().DestroyImage(device.handle(), handle, nullptr);
 }
 
 }  // namespace
 
 void Image::destroyNow() {
   layer_views_.insert(layer_views_.end(), {view_, target_view_});
-  destroyImage(*device_, handle_, layer_views_);
+  destroyImage(*device_, owned_ ? handle_ : VK_NULL_HANDLE, layer_views_);
 }
 
 Image::~Image() {
   if (!handle_) return;
   std::vector<VkImageView> views = layer_views_;
   views.insert(views.end(), {view_, target_view_});
-  device_->retire([device = device_, handle = handle_, views, memory = share(std::move(allocation_))] {
+  const VkImage handle = owned_ ? handle_ : VK_NULL_HANDLE;
+  device_->retire([device = device_, handle, views, memory = share(std::move(allocation_))] {
     destroyImage(*device, handle, views);
   });
 }
@@ -176,6 +213,7 @@ Image::~Image() {
 void Image::swap(Image& other) noexcept {
   std::swap(device_, other.device_);
   std::swap(handle_, other.handle_);
+  std::swap(owned_, other.owned_);
   std::swap(view_, other.view_);
   std::swap(target_view_, other.target_view_);
   std::swap(layer_views_, other.layer_views_);

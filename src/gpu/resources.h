@@ -72,6 +72,11 @@ class Image {
   Image() = default;
   /// @throws ResourceError
   Image(Device& device, const ImageDesc& desc, std::string_view name);
+  /// Somebody else's image, which he destroys when the device is done with it; views of it are ours.
+  /// @param desc    as it was created; of several layers and mips the first of each
+  /// @param layout  that it is in when the next commands run
+  /// @throws ResourceError
+  Image(Device& device, VkImage foreign, const ImageDesc& desc, VkImageLayout layout);
   Image(Image&& other) noexcept { swap(other); }
   Image& operator=(Image&& other) noexcept {
     swap(other);
@@ -83,7 +88,10 @@ class Image {
   VkImage handle() const { return handle_; }
   const ImageDesc& desc() const { return desc_; }
   VkExtent2D extent() const { return {desc_.width, desc_.height}; }
+  /// What is read and written of it: colour, or depth.
   VkImageAspectFlags aspect() const { return aspect_; }
+  /// What changes its layout together.
+  VkImageAspectFlags allAspects() const;
   /// Of all layers and mips; for sampling.
   VkImageView view() const { return view_; }
   /// Of the first mip, as an array of all layers; for storage.
@@ -100,6 +108,7 @@ class Image {
 
   Device* device_ = nullptr;
   VkImage handle_ = VK_NULL_HANDLE;
+  bool owned_ = true;
   VkImageView view_ = VK_NULL_HANDLE, target_view_ = VK_NULL_HANDLE;
   std::vector<VkImageView> layer_views_;  ///< where there are several layers
   VkImageAspectFlags aspect_ = 0;
