@@ -201,6 +201,14 @@ inline Number log(Number x) {
   return withError(std::log(x.value), inherited + (near_1 ? std::ldexp(1.0, -21) : 0.0), 4.0);
 }
 
+/// As Vulkan defines it, by way of the logarithm.
+inline Number pow(Number x, Number y) {
+  if (isZero(x)) return {std::pow(x.value, y.value), 0.0};
+  Number result = exp(y * log(x));
+  result.value = std::pow(x.value, y.value);
+  return result;
+}
+
 /// Of sin or cos: the precision ends at ±π, that is at π as a float, which is a little more.
 inline Number ofAngle(Number x, float value) {
   const bool promised = std::abs(x.value) - x.error <= 3.141593;

@@ -1,5 +1,6 @@
 // From here to tracked_end.h shared text is compiled with tracked numbers, into namespace nephroid::tracked. No include
 // guard: it is a bracket. What such text includes beyond core/optics must have been included before.
+#include "core/image/tonemap.shared.h"
 #include "core/optics/absorption.shared.h"
 #include "core/optics/dispersion.shared.h"
 #include "core/optics/fresnel.shared.h"
@@ -20,6 +21,7 @@
 #undef NEPHROID_RAY_DIFFERENTIAL_SHARED_H
 #undef NEPHROID_REFRACTION_SHARED_H
 #undef NEPHROID_SURFACE_SHARED_H
+#undef NEPHROID_TONEMAP_SHARED_H
 
 #undef NEPHROID_NAMESPACE_BEGIN
 #define NEPHROID_NAMESPACE_BEGIN namespace nephroid::tracked {

@@ -2,20 +2,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
 #include <vector>
 
 namespace nephroid {
 namespace {
-
-/// Middle grey: what the log-average is mapped to (the "key" of Reinhard et al. 2002, section 3.1).
-constexpr double kMiddleGrey = 0.18;
-/// Where auto exposure lets the 99th percentile lie at most. A caustic is small, bright and the point of the picture:
-/// by the log-average alone it would be burnt out. Four times white still shades through the filmic curve.
-constexpr double kMaxHighlight = 4.0;
-constexpr double kHighlightQuantile = 0.99;
-/// Pixels dimmer than this fraction of the highlights are as good as black; a logarithm would let a few stray photons
-/// in the dark rule the whole picture.
-constexpr double kBlackFraction = 0x1p-20;
 
 std::vector<double> collectPositiveLuminances(const Image& radiance) {
   std::vector<double> luminances;
@@ -28,17 +19,6 @@ std::vector<double> collectPositiveLuminances(const Image& radiance) {
   return luminances;
 }
 
-/// Narkowicz' rational fit of the ACES curve (K. Narkowicz, "ACES Filmic Tone Mapping Curve", 2015):
-/// x (2.51 x + 0.03) / (x (2.43 x + 0.59) + 0.14), clamped to 1.
-/// The argument is scaled so that middle grey stays middle grey and switching the curve on does not change exposure:
-/// 2.0726 x² − 0.0762 x − 0.0252 = 0 gives the x = 0.13017 that the curve maps to 0.18; hence 0.13017 / 0.18.
-float applyFilmicCurve(float linear) {
-  constexpr float kGreyScale = 0.72316F;
-  constexpr float kSaturated = 1e4F;  // far into the clamp, and its square is still finite
-  const float x = std::min(linear * kGreyScale, kSaturated);
-  return std::min(x * (2.51F * x + 0.03F) / (x * (2.43F * x + 0.59F) + 0.14F), 1.0F);
-}
-
 }  // namespace
 
 /// exp of the mean log luminance over the pixels that are not black goes to 0.18; but the 99th percentile of the
@@ -46,22 +26,23 @@ float applyFilmicCurve(float linear) {
 float computeAutoExposure(const Image& radiance) {
   std::vector<double> luminances = collectPositiveLuminances(radiance);
   if (luminances.empty()) return 0.0F;
-  const auto rank = static_cast<std::size_t>(std::ceil(kHighlightQuantile * static_cast<double>(luminances.size())));
-  const auto highlight = luminances.begin() + static_cast<std::ptrdiff_t>(std::max<std::size_t>(rank, 1) - 1);
+  const std::uint32_t rank = highlightRank(static_cast<std::uint32_t>(luminances.size()));
+  const auto highlight = luminances.begin() + static_cast<std::ptrdiff_t>(rank - 1);
   std::nth_element(luminances.begin(), highlight, luminances.end());
   const double highlight_luminance = *highlight;
 
   // nth_element leaves an order that depends on the library; sorted, the sum is the same everywhere.
   std::sort(luminances.begin(), luminances.end());
+  const double black = std::exp2(-double{kBlackOctaves}) * highlight_luminance;
   double log_sum = 0.0;
   std::size_t count = 0;
   for (const double l : luminances) {
-    if (l < kBlackFraction * highlight_luminance) continue;
+    if (l < black) continue;
     log_sum += std::log2(l);
     ++count;
   }
-  const double grey_ev = std::log2(kMiddleGrey) - log_sum / static_cast<double>(count);
-  const double highlight_ev = std::log2(kMaxHighlight / highlight_luminance);
+  const double grey_ev = std::log2(double{kMiddleGrey}) - log_sum / static_cast<double>(count);
+  const double highlight_ev = std::log2(double{kMaxHighlight} / highlight_luminance);
   return static_cast<float>(std::min(grey_ev, highlight_ev));
 }
 
@@ -80,14 +61,6 @@ Image toDisplay(const Image& radiance, float exposure_ev, ToneMap tone_map) {
       display.setRgb(x, y, coded);
     }
   return display;
-}
-
-float srgbFromLinear(float linear) {
-  return linear <= 0.0031308F ? 12.92F * linear : 1.055F * std::pow(linear, 1.0F / 2.4F) - 0.055F;
-}
-
-float linearFromSrgb(float coded) {
-  return coded <= 0.04045F ? coded / 12.92F : std::pow((coded + 0.055F) / 1.055F, 2.4F);
 }
 
 }  // namespace nephroid

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "core/image/image.h"
+#include "core/image/tonemap.shared.h"
 
 namespace nephroid {
 
@@ -14,9 +15,5 @@ float computeAutoExposure(const Image& radiance);
 /// Linear in [0, ∞) to sRGB-coded in [0, 1]: exposure, then clamp (kClamp) or a filmic curve (kFilmic), then sRGB.
 /// Negative values (signed dispersion bands) are clamped here and nowhere else.
 Image toDisplay(const Image& radiance, float exposure_ev, ToneMap tone_map);
-
-/// IEC 61966-2-1 transfer functions.
-float srgbFromLinear(float linear);
-float linearFromSrgb(float coded);
 
 }  // namespace nephroid

@@ -33,6 +33,7 @@ using glm::min;
 using glm::mix;
 using glm::normalize;
 using glm::packSnorm2x16;
+using glm::pow;
 using glm::sin;
 using glm::sqrt;
 using glm::unpackSnorm2x16;

@@ -12,6 +12,7 @@
 #include "ray_differential.shared.h"
 #include "refraction.shared.h"
 #include "surface.shared.h"
+#include "../image/tonemap.shared.h"
 
 layout(local_size_x = 64) in;
 
