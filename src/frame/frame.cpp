@@ -114,7 +114,7 @@ struct RealtimeFrame::Passes {
 };
 
 RealtimeFrame::RealtimeFrame(gpu::Device& device, const SceneData& scene, const Camera& camera,
-                             const FrameSettings& settings)
+                             const FrameSettings& settings, const MakeRealtimeTechnique& make_technique)
     : device_(device),
       scene_(scene),
       camera_(camera),
@@ -123,6 +123,7 @@ RealtimeFrame::RealtimeFrame(gpu::Device& device, const SceneData& scene, const 
       recorder_(device),
       camera_view_(device, sizeof(ViewRecord), VK_BUFFER_USAGE_STORAGE_BUFFER_BIT, gpu::MemoryIntent::kDevice,
                    "camera"),
+      nothing_(device, {.format = kFloat4, .usage = VK_IMAGE_USAGE_SAMPLED_BIT}, "nothing"),
       environment_sampler_(device, {.address_u = VK_SAMPLER_ADDRESS_MODE_REPEAT}, "environment") {
   recorder_.begin();
   buffers_ = std::make_unique<SceneBuffers>(device, recorder_, scene, settings.specular_alpha);
@@ -133,6 +134,9 @@ RealtimeFrame::RealtimeFrame(gpu::Device& device, const SceneData& scene, const 
   makePasses();
   light_grids_ = std::make_unique<LightGrids>(device, scene, *buffers_, settings.shadow_size, settings.seed);
   if (settings.specular && buffers_->traits().specular.present) makeSpecular();
+  if (make_technique)
+    technique_ = make_technique({device, scene, *buffers_, *light_grids_, settings.specular_alpha, settings.seed});
+  makeCaustic();
   reset();
 }
 
@@ -142,8 +146,9 @@ void RealtimeFrame::makeTargets() {
   constexpr VkImageUsageFlags kDrawn = VK_IMAGE_USAGE_COLOR_ATTACHMENT_BIT | VK_IMAGE_USAGE_SAMPLED_BIT;
   seen_ = makePixels(device_, settings_, kSeenFormat, kDrawn, "seen");
   depth_ = makePixels(device_, settings_, kDepthFormat, VK_IMAGE_USAGE_DEPTH_STENCIL_ATTACHMENT_BIT, "depth");
-  direct_ = makePixels(device_, settings_, kFloat4, VK_IMAGE_USAGE_STORAGE_BIT, "direct");
-  emission_ = makePixels(device_, settings_, kFloat4, VK_IMAGE_USAGE_STORAGE_BIT, "emission");
+  constexpr VkImageUsageFlags kSummed = VK_IMAGE_USAGE_STORAGE_BIT | VK_IMAGE_USAGE_SAMPLED_BIT;
+  direct_ = makePixels(device_, settings_, kFloat4, kSummed, "direct");
+  emission_ = makePixels(device_, settings_, kFloat4, kSummed, "emission");
   raster_.reset();
   if (chooseRasteriser(settings_.rasteriser, device_, *buffers_, settings_.width, settings_.height) !=
       Rasteriser::kHardware)
@@ -175,6 +180,12 @@ void RealtimeFrame::makeSpecular() {
   recorder_.submit();
 }
 
+void RealtimeFrame::makeCaustic() {
+  if (!technique_) return;
+  const CausticPass::Inputs inputs{camera_view_, seen_, tint_};
+  caustic_ = std::make_unique<CausticPass>(device_, *buffers_, inputs, settings_.specular_alpha);
+}
+
 void RealtimeFrame::makePasses() {
   lamps_compiled_ = lamp_count_ > 0;
   passes_ = std::make_unique<Passes>(device_, buffers_->traits(), skyConstants());
@@ -197,11 +208,14 @@ void RealtimeFrame::resize(int width, int height) {
   makeTargets();
   recorder_.submit();
   if (specular_) makeSpecular();
+  makeCaustic();
+  display_.reset();
   reset();
 }
 
 void RealtimeFrame::lightChanged(std::size_t index) {
   light_grids_->lightChanged(index);
+  if (technique_) technique_->lightChanged(index);
   recorder_.begin();
   uploadLamps();
   recorder_.submit();
@@ -218,6 +232,7 @@ void RealtimeFrame::objectsMoved() {
   buffers_->updateInstances(device_, recorder_, scene_);
   recorder_.submit();
   light_grids_->geometryChanged();
+  if (technique_) technique_->objectsMoved();
   if (specular_) {
     specular_.reset();
     tree_.reset();
@@ -244,12 +259,10 @@ void RealtimeFrame::uploadEnvironment() {
 
 void RealtimeFrame::reset() {
   recorder_.begin();
-  std::vector<const gpu::Image*> sums{&direct_, &emission_};
-  if (specular_) sums.push_back(&specular_->sum());
   std::vector<Use> uses;
-  for (const gpu::Image* sum : sums) uses.emplace_back(*sum, Access::kTransferWrite, true);
+  for (const gpu::Image* sum : sums()) uses.emplace_back(*sum, Access::kTransferWrite, true);
   recorder_.pass("clear", uses, [&](PassCommands& commands) {
-    for (const gpu::Image* sum : sums) commands.clear(*sum, {});
+    for (const gpu::Image* sum : sums()) commands.clear(*sum, {});
   });
   recorder_.submit();
   samples_ = 0;
@@ -266,6 +279,7 @@ void RealtimeFrame::render(std::uint32_t sample) {
   if (buffers_->traits().passable) recordTint(film_offset, sample);
   recordShade(film_offset, sample);
   if (specular_) recordSpecular(film_offset, sample);
+  if (technique_) recordCaustic(sample);
   recorder_.submit();
   recorder_.wait();
   times_.insert(times_.end(), recorder_.passTimes().begin(), recorder_.passTimes().end());
@@ -369,6 +383,56 @@ void RealtimeFrame::recordSpecular(vec2 film_offset, std::uint32_t frame) {
                                 std::cos(rotation), std::sin(rotation)});
 }
 
+void RealtimeFrame::recordCaustic(std::uint32_t frame) {
+  clearIrradiance(recorder_, caustic_->target());
+  const PixelSurfaces surfaces = PixelSurfaces::ofFrame(camera_view_, seen_, nothing_, buffers_->sampler());
+  technique_->record(recorder_, {surfaces, caustic_->target(), frame, 1.0F});
+  caustic_->record(recorder_, frame);
+}
+
+const gpu::Image* RealtimeFrame::sumOf(const std::string& layer) const {
+  if (layer == "direct") return &direct_;
+  if (layer == "emission") return &emission_;
+  if (layer == "specular") return specular_ ? &specular_->sum() : nullptr;
+  if (layer == "caustic") return caustic_ ? &caustic_->radianceSum() : nullptr;
+  if (layer == "irradiance_caustic") return caustic_ ? &caustic_->irradianceSum() : nullptr;
+  throw InternalError(fmt::format("'{}' is no layer that the frame sums", layer));
+}
+
+std::vector<const gpu::Image*> RealtimeFrame::sums() const {
+  std::vector<const gpu::Image*> images;
+  for (const char* layer : {"direct", "emission", "specular", "caustic", "irradiance_caustic"})
+    if (const gpu::Image* sum = sumOf(layer)) images.push_back(sum);
+  return images;
+}
+
+const gpu::Image& RealtimeFrame::compose(std::span<const std::string> layers,
+                                         const std::optional<FrameDisplay>& display) {
+  if (!display_) display_ = std::make_unique<DisplayPass>(device_, seen_.desc().width, seen_.desc().height);
+  std::vector<const gpu::Image*> images;
+  for (const std::string& layer : layers)
+    if (const gpu::Image* sum = sumOf(layer)) images.push_back(sum);
+  // Of layers that are not made, the sum is black.
+  const float weight = images.empty() ? 0.0F : 1.0F / static_cast<float>(std::max(samples_, 1U));
+  if (images.empty()) images.push_back(&direct_);
+  recorder_.begin();
+  display_->record(recorder_, images, weight, display);
+  recorder_.submit();
+  return display_->picture();
+}
+
+void RealtimeFrame::lightForeign(const ForeignPicture& picture, const IrradianceImages& target,
+                                 const ForeignLight& light, std::uint32_t sample, float weight) {
+  if (!foreign_) foreign_ = std::make_unique<ForeignLighting>(device_, *buffers_, *light_grids_);
+  times_.clear();
+  light_grids_->update(recorder_, sample, times_);
+  recorder_.begin();
+  foreign_->record(recorder_, picture, target, light, light.caustic ? technique_.get() : nullptr, sample, weight);
+  recorder_.submit();
+  recorder_.wait();
+  times_.insert(times_.end(), recorder_.passTimes().begin(), recorder_.passTimes().end());
+}
+
 namespace {
 
 /// Some channels of four, times `scale`.
@@ -387,9 +451,9 @@ Image takeChannels(gpu::Device& device, const gpu::Image& source, int channels, 
 }  // namespace
 
 Image RealtimeFrame::readSummed(const std::string& layer) {
-  if (layer == "specular" && !specular_) return {settings_.width, settings_.height, 3};
-  const gpu::Image& sum = layer == "direct" ? direct_ : layer == "emission" ? emission_ : specular_->sum();
-  return takeChannels(device_, sum, 3, 1.0F / static_cast<float>(std::max(samples_, 1U)));
+  const gpu::Image* sum = sumOf(layer);
+  if (!sum) return {settings_.width, settings_.height, 3};
+  return takeChannels(device_, *sum, 3, 1.0F / static_cast<float>(std::max(samples_, 1U)));
 }
 
 Image RealtimeFrame::readGeometry(const std::string& layer) {

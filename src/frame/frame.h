@@ -5,14 +5,19 @@
 #pragma once
 
 #include <memory>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
 
 #include "core/image/image.h"
 #include "core/optics/surface.shared.h"
+#include "frame/caustic_pass.h"
+#include "frame/display_pass.h"
+#include "frame/foreign_lighting.h"
 #include "frame/light_grids.h"
 #include "frame/raster.h"
+#include "frame/realtime_technique.h"
 #include "frame/scene_buffers.h"
 #include "frame/specular_pass.h"
 #include "gpu/commands.h"
@@ -34,8 +39,10 @@ struct FrameSettings {
 class RealtimeFrame {
  public:
   /// Uploads the scene and makes what all frames need.
+  /// @param make_technique  what draws the caustic; empty: none
   /// @throws ResourceError
-  RealtimeFrame(gpu::Device& device, const SceneData& scene, const Camera& camera, const FrameSettings& settings);
+  RealtimeFrame(gpu::Device& device, const SceneData& scene, const Camera& camera, const FrameSettings& settings,
+                const MakeRealtimeTechnique& make_technique = {});
   ~RealtimeFrame();
 
   void setCamera(const Camera& camera);
@@ -54,10 +61,20 @@ class RealtimeFrame {
   /// Of the last frame, by pass; those of lights' grids come first.
   const std::vector<gpu::PassTime>& passTimes() const { return times_; }
 
-  /// Mean of a layer over the samples since `reset`: "direct", "emission", "specular".
+  /// Mean of a layer over the samples since `reset`: "direct", "caustic", "specular", "emission" and, not summed,
+  /// "irradiance_caustic". Black if the frame does not make it.
   Image readSummed(const std::string& layer);
   /// A layer of the geometry at the pixels' centres: "albedo", "normal", "position", "depth", "id".
   Image readGeometry(const std::string& layer);
+
+  /// The sum of such layers (of "direct", "caustic", "specular", "emission") as an image on the device, submitted but
+  /// not waited for. Valid until the next call or `resize`. @param display  empty: radiance as it is
+  const gpu::Image& compose(std::span<const std::string> layers, const std::optional<FrameDisplay>& display);
+
+  /// Records nothing of this frame's own picture: adds sample `sample` of the light on somebody else's to `target`.
+  /// Waits until the device is done.
+  void lightForeign(const ForeignPicture& picture, const IrradianceImages& target, const ForeignLight& light,
+                    std::uint32_t sample, float weight);
 
  private:
   struct Passes;
@@ -67,12 +84,17 @@ class RealtimeFrame {
   void makeTargets();
   void makePasses();
   void makeSpecular();
+  void makeCaustic();
+  /// Null if the frame does not make it.
+  const gpu::Image* sumOf(const std::string& layer) const;
+  std::vector<const gpu::Image*> sums() const;
   /// Of frame/sky.glsl: what the camera may see that is no receiver.
   std::vector<gpu::Constant> skyConstants() const;
   void recordVisibility(vec2 film_offset, std::uint32_t frame, bool geometry_only);
   void recordTint(vec2 film_offset, std::uint32_t frame);
   void recordShade(vec2 film_offset, std::uint32_t frame);
   void recordSpecular(vec2 film_offset, std::uint32_t frame);
+  void recordCaustic(std::uint32_t frame);
   /// @param draws  of the scene, by index
   void drawScene(gpu::PassCommands& commands, const std::vector<std::size_t>& draws);
   std::vector<gpu::Use> drawUses(std::initializer_list<gpu::Use> targets) const;
@@ -87,13 +109,17 @@ class RealtimeFrame {
   std::unique_ptr<SceneBuffers> buffers_;
   std::unique_ptr<LightGrids> light_grids_;
   std::unique_ptr<Passes> passes_;
-  std::unique_ptr<ComputeRaster> raster_;   ///< where it is used
-  std::unique_ptr<TriangleTree> tree_;      ///< null: nothing is specular
-  std::unique_ptr<SpecularPass> specular_;  ///< null: nothing is specular
+  std::unique_ptr<ComputeRaster> raster_;         ///< where it is used
+  std::unique_ptr<TriangleTree> tree_;            ///< null: nothing is specular
+  std::unique_ptr<SpecularPass> specular_;        ///< null: nothing is specular
+  std::unique_ptr<RealtimeTechnique> technique_;  ///< null: none, or it has nothing to draw
+  std::unique_ptr<CausticPass> caustic_;          ///< where there is one
+  std::unique_ptr<DisplayPass> display_;          ///< once somebody asked for it
+  std::unique_ptr<ForeignLighting> foreign_;      ///< likewise
   ViewRecord view_{};
   DrawSplit split_;
   gpu::Buffer camera_view_;
-  gpu::Image seen_, depth_, tint_, direct_, emission_, environment_, lamps_;
+  gpu::Image seen_, depth_, tint_, direct_, emission_, environment_, lamps_, nothing_;
   gpu::Sampler environment_sampler_;
   std::uint32_t lamp_count_ = 0;
   bool lamps_compiled_ = false;

@@ -108,11 +108,23 @@ struct ViewRecord {
   vec3 eye;  // perspective: the eye; orthographic: the middle of the plane that rays start on
   uint is_orthographic;
   vec3 forward;
-  float pad_forward;
-  vec3 right;  // of half the picture's width: at distance 1, or in m if orthographic
-  float pad_right;
+  float film_x;  // place of the sample in each pixel, in [0, 1)
+  vec3 right;    // of half the picture's width: at distance 1, or in m if orthographic
+  float film_y;
   vec3 up;  // likewise of half its height
   float pad_up;
+};
+
+/// How to find places from somebody else's depths and normals.
+struct ForeignViewRecord {
+  vec4 world_row_x;  // world from clip, row by row; homogeneous
+  vec4 world_row_y;
+  vec4 world_row_z;
+  vec4 world_row_w;
+  float depth_step;      // between two depths that the format tells apart,
+  float depth_ulp;       // and the same relative to the depth
+  uint normals_are_coded;  // as 0.5 + 0.5 n
+  uint pad;
 };
 
 /// A light as a point or a direction that shines, for one sample of it.

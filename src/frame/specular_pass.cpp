@@ -73,9 +73,12 @@ SpecularPass::SpecularPass(gpu::Device& device, gpu::CommandRecorder& recorder, 
               "specular"),
       bands_(makeBandTable(device, recorder)) {
   const gpu::ImageDesc& seen = inputs.seen.desc();
-  sum_ = gpu::Image(
-      device, {.format = kFloat4, .width = seen.width, .height = seen.height, .usage = VK_IMAGE_USAGE_STORAGE_BIT},
-      "specular");
+  sum_ = gpu::Image(device,
+                    {.format = kFloat4,
+                     .width = seen.width,
+                     .height = seen.height,
+                     .usage = VK_IMAGE_USAGE_STORAGE_BIT | VK_IMAGE_USAGE_SAMPLED_BIT},
+                    "specular");
   const VkDeviceSize words = VkDeviceSize{seen.width} * seen.height + 1;
   pixels_ = gpu::Buffer(device, words * sizeof(std::uint32_t), VK_BUFFER_USAGE_STORAGE_BUFFER_BIT,
                         gpu::MemoryIntent::kDevice, "specular pixels");

@@ -57,6 +57,7 @@ ViewRecord makeCameraView(const Camera& camera, int width, int height, const Bou
   view.right = cross(camera.forward, camera.up) * (half_height * aspect);
   view.up = camera.up * half_height;
   // The rasteriser samples pixel centres: the sample's place is moved there.
+  view.film_x = film_offset.x, view.film_y = film_offset.y;
   const vec2 shift = (vec2(0.5F) - film_offset) * 2.0F / vec2(static_cast<float>(width), static_cast<float>(height));
   setClipRows(view, fitDepthRange(bounds, camera.eye, camera.forward), shift);
   return view;
@@ -68,6 +69,7 @@ ViewRecord makePerspectiveView(vec3 eye, vec3 forward, vec3 up, float half_tange
   view.forward = forward;
   view.right = cross(forward, up) * half_tangent;
   view.up = up * half_tangent;
+  view.film_x = view.film_y = 0.5F;
   setClipRows(view, range, vec2(0.0F));
   return view;
 }

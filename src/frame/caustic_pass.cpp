@@ -1,0 +1,68 @@
+#include "frame/caustic_pass.h"
+
+#include "shaders/frame/caustic.comp.h"
+
+namespace nephroid {
+namespace {
+
+using gpu::Access;
+using gpu::Bound;
+using gpu::PassCommands;
+using gpu::Use;
+
+constexpr VkDescriptorType kTable = VK_DESCRIPTOR_TYPE_STORAGE_BUFFER;
+constexpr VkDescriptorType kTexture = VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER;
+constexpr VkDescriptorType kStorage = VK_DESCRIPTOR_TYPE_STORAGE_IMAGE;
+/// Threads of a group along each side.
+constexpr std::uint32_t kGroup = 8;
+
+struct CausticPush {
+  std::uint32_t frame;
+  float specular_alpha;
+};
+
+gpu::Image makeSum(gpu::Device& device, const gpu::Image& like, const char* name) {
+  return {device,
+          {.format = VK_FORMAT_R32G32B32A32_SFLOAT,
+           .width = like.desc().width,
+           .height = like.desc().height,
+           .usage = VK_IMAGE_USAGE_STORAGE_BIT | VK_IMAGE_USAGE_SAMPLED_BIT},
+          name};
+}
+
+}  // namespace
+
+CausticPass::CausticPass(gpu::Device& device, const SceneBuffers& buffers, const Inputs& inputs, float specular_alpha)
+    : buffers_(buffers),
+      inputs_(inputs),
+      specular_alpha_(specular_alpha),
+      target_(makeIrradianceImages(device, inputs.seen.desc().width, inputs.seen.desc().height)),
+      radiance_(makeSum(device, inputs.seen, "caustic")),
+      irradiance_(makeSum(device, inputs.seen, "irradiance of caustics")),
+      pipeline_(
+          device,
+          {.shader = shaders::caustic_comp,
+           .bindings = SceneBuffers::bindings({kTable, kTexture, kTexture, kTexture, kTexture, kStorage, kStorage}),
+           .push_bytes = sizeof(CausticPush),
+           .constants = buffers.traits().constants()},
+          "caustic") {}
+
+void CausticPass::record(gpu::CommandRecorder& recorder, std::uint32_t frame) {
+  const std::vector<Use> uses = buffers_.uses(
+      Access::kComputeRead, {Use(inputs_.camera_view, Access::kComputeRead), Use(inputs_.seen, Access::kComputeRead),
+                             Use(inputs_.tint, Access::kComputeRead), Use(target_.irradiance, Access::kComputeRead),
+                             Use(target_.direction, Access::kComputeRead), Use(radiance_, Access::kComputeWrite),
+                             Use(irradiance_, Access::kComputeWrite)});
+  recorder.pass("caustic", uses, [&](PassCommands& commands) {
+    const gpu::Sampler& nearest = buffers_.sampler();
+    commands.bind(pipeline_);
+    commands.bindResources(
+        buffers_.bound({Bound(7, inputs_.camera_view), Bound(8, inputs_.seen, nearest), Bound(9, inputs_.tint, nearest),
+                        Bound(10, target_.irradiance, nearest), Bound(11, target_.direction, nearest),
+                        Bound(12, radiance_), Bound(13, irradiance_)}));
+    commands.pushConstants(CausticPush{frame, specular_alpha_});
+    commands.dispatch(gpu::groupsOf(radiance_.desc().width, kGroup), gpu::groupsOf(radiance_.desc().height, kGroup));
+  });
+}
+
+}  // namespace nephroid

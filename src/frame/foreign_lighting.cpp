@@ -1,0 +1,28 @@
+#include "frame/foreign_lighting.h"
+
+namespace nephroid {
+
+ForeignLighting::ForeignLighting(gpu::Device& device, const SceneBuffers& buffers, const LightGrids& lights)
+    : device_(device),
+      buffers_(buffers),
+      lights_(lights),
+      view_(device, sizeof(ForeignViewRecord), VK_BUFFER_USAGE_STORAGE_BUFFER_BIT, gpu::MemoryIntent::kDevice,
+            "foreign view"),
+      nothing_(device, {.format = VK_FORMAT_R32G32_UINT, .usage = VK_IMAGE_USAGE_SAMPLED_BIT}, "nothing seen") {}
+
+void ForeignLighting::record(gpu::CommandRecorder& recorder, const ForeignPicture& picture,
+                             const IrradianceImages& target, const ForeignLight& light, RealtimeTechnique* technique,
+                             std::uint32_t sample, float weight) {
+  const ForeignViewRecord view = makeForeignView(picture.view, picture.depth.desc().format);
+  recorder.upload(view_, std::as_bytes(std::span(&view, 1)));
+  const PixelSurfaces surfaces =
+      PixelSurfaces::ofForeign(view_, picture.depth, picture.normal, nothing_, buffers_.sampler());
+  const RealtimeSample lit{surfaces, target, sample, weight};
+  if (light.direct) {
+    if (!direct_) direct_ = std::make_unique<DirectIrradiance>(device_, buffers_, lights_, true);
+    direct_->record(recorder, lit);
+  }
+  if (technique) technique->record(recorder, lit);
+}
+
+}  // namespace nephroid

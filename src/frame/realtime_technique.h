@@ -1,0 +1,58 @@
+// What a real-time technique gets from the frame and gives to it. The frame draws everything but the caustic; a
+// technique says how much light reaches each pixel on its way through glass, water and mirrors.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <functional>
+#include <memory>
+
+#include "frame/irradiance_images.h"
+#include "frame/light_grids.h"
+#include "frame/pixel_surfaces.h"
+#include "frame/scene_buffers.h"
+#include "gpu/commands.h"
+#include "scene/scene_data.h"
+
+namespace nephroid {
+
+/// Given once; all of it outlives the technique.
+struct RealtimeInputs {
+  gpu::Device& device;
+  const SceneData& scene;
+  const SceneBuffers& buffers;  ///< the scene on the device
+  const LightGrids& lights;     ///< its lights in the present sample, and what casts shadows from them
+  float specular_alpha;         ///< microfacets finer than this are class S
+  std::uint32_t seed;
+};
+
+/// Given for each sample.
+struct RealtimeSample {
+  const PixelSurfaces& surfaces;   ///< what each pixel shows
+  const IrradianceImages& target;  ///< to add to, of the size of `surfaces`
+  std::uint32_t index = 0;
+  float weight = 1.0F;  ///< times which it is added
+};
+
+/// Not thread-safe.
+class RealtimeTechnique {
+ public:
+  RealtimeTechnique() = default;
+  virtual ~RealtimeTechnique() = default;
+  RealtimeTechnique(const RealtimeTechnique&) = delete;
+  RealtimeTechnique& operator=(const RealtimeTechnique&) = delete;
+
+  /// Records passes that add the irradiance of light LS⁺, on the side of each surface that is seen, to the target.
+  /// @throws ResourceError
+  virtual void record(gpu::CommandRecorder& recorder, const RealtimeSample& sample) = 0;
+
+  /// SceneData::lights[index] is another now.
+  virtual void lightChanged(std::size_t index) = 0;
+  /// Instances stand elsewhere now; the buffers know it already.
+  virtual void objectsMoved() = 0;
+};
+
+/// @return  null if there is nothing to draw: no light that could make a caustic, or no technique
+using MakeRealtimeTechnique = std::function<std::unique_ptr<RealtimeTechnique>(const RealtimeInputs&)>;
+
+}  // namespace nephroid
