@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <memory>
 #include <span>
 #include <string>
 #include <string_view>
@@ -14,6 +15,9 @@
 #include "techniques/ledger.h"
 
 namespace nephroid {
+
+class RealtimeTechnique;
+struct RealtimeInputs;
 
 /// What to render. A budget of 0 means "not given"; the first budget to be spent ends a progressive render.
 struct RenderSettings {
@@ -58,6 +62,9 @@ struct Technique {
   std::string source;
   bool on_vulkan = false;  ///< needs a Vulkan device; else computes on the CPU alone
   std::vector<ParamSpec> params;
+  /// Of a real-time technique: draws the caustic of a frame. Null: it has none.
+  /// @return  null if the scene has no caustic that it could draw
+  std::unique_ptr<RealtimeTechnique> (*make_realtime)(const RealtimeInputs& inputs, const ParamSet& params) = nullptr;
   /// Pictures of the same scene, settings and seed are identical for any thread count unless a time budget ends them.
   /// @throws UsageError, DeviceError, ResourceError, InterruptedError (stopped before there was anything to keep)
   RenderResult (*render)(const SceneData& scene, const Camera& camera, const RenderSettings& settings,
