@@ -5,6 +5,7 @@
 #include <optional>
 
 #include "api/display.h"
+#include "api/scene_access.h"
 #include "core/image/image_io.h"
 #include "scene/builtin/builtin.h"
 #include "scene/edit.h"
@@ -15,34 +16,22 @@
 
 namespace nephroid {
 
-struct Scene::Impl {
-  SceneData data;
-  Floor floor = Floor::kAuto;
-  std::string camera_choice = "0";
-  bool completed = false;
-
-  /// Only when it is needed: an edit may still add the light that a scene lacks.
-  void complete() {
-    if (completed) return;
-    const FloorMode mode = floor == Floor::kOn    ? FloorMode::kOn
-                           : floor == Floor::kOff ? FloorMode::kOff
-                                                  : FloorMode::kAuto;
-    completeScene(data, mode);
-    completed = true;
-  }
-};
+void Scene::Impl::complete() {
+  if (completed) return;
+  const FloorMode mode = floor == Floor::kOn    ? FloorMode::kOn
+                         : floor == Floor::kOff ? FloorMode::kOff
+                                                : FloorMode::kAuto;
+  completeScene(data, mode);
+  completed = true;
+}
 
 struct Picture::Impl {
   RenderResult result;
 };
 
-/// What `render` sees of the two classes, so that their insides stay out of the header.
-struct SceneAccess {
-  static Scene::Impl& get(Scene& scene) { return *scene.impl_; }
-  static Picture makePicture(RenderResult result) {
-    return Picture(std::make_unique<Picture::Impl>(Picture::Impl{std::move(result)}));
-  }
-};
+Picture SceneAccess::makePicture(RenderResult result) {
+  return Picture(std::make_unique<Picture::Impl>(Picture::Impl{std::move(result)}));
+}
 
 namespace {
 
