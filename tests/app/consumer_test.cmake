@@ -1,4 +1,4 @@
-# Installs nephroid into an empty prefix, then builds and runs a project that finds it there.
+# Installs nephroid into an empty prefix, then builds and runs projects that find it there.
 function(run)
   execute_process(COMMAND ${ARGV} RESULT_VARIABLE result OUTPUT_VARIABLE output ERROR_VARIABLE output)
   if(NOT result EQUAL 0)
@@ -8,7 +8,6 @@ function(run)
 endfunction()
 
 set(prefix ${WORK_DIR}/prefix)
-set(build ${WORK_DIR}/build)
 file(REMOVE_RECURSE ${WORK_DIR})
 file(MAKE_DIRECTORY ${WORK_DIR})
 
@@ -17,17 +16,35 @@ set(flags "")
 if(SANITIZE)
   set(flags -DCMAKE_CXX_FLAGS=-fsanitize=${SANITIZE})
 endif()
-run(${CMAKE_COMMAND} -S ${CONSUMER_DIR} -B ${build} -G ${GENERATOR} -DCMAKE_CXX_COMPILER=${CXX}
-    -DCMAKE_PREFIX_PATH=${prefix} -DCMAKE_BUILD_TYPE=Release ${flags})
-run(${CMAKE_COMMAND} --build ${build})
-run(${CMAKE_COMMAND} -E chdir ${WORK_DIR} ${build}/minimal)
+# buildExample(NAME): examples/NAME, in a folder of its own.
+macro(buildExample name)
+  run(${CMAKE_COMMAND} -S ${EXAMPLES_DIR}/${name} -B ${WORK_DIR}/${name} -G ${GENERATOR} -DCMAKE_CXX_COMPILER=${CXX}
+      -DCMAKE_PREFIX_PATH=${prefix} -DCMAKE_BUILD_TYPE=Release ${flags})
+  run(${CMAKE_COMMAND} --build ${WORK_DIR}/${name})
+endmacro()
+buildExample(consumer)
+run(${CMAKE_COMMAND} -E chdir ${WORK_DIR} ${WORK_DIR}/consumer/minimal)
 if(NOT EXISTS ${WORK_DIR}/ring.png)
   message(FATAL_ERROR "the example ran but wrote no ring.png in ${WORK_DIR}")
+endif()
+if(VULKAN)
+  buildExample(embed)
+  set(ENV{VK_INSTANCE_LAYERS} VK_LAYER_KHRONOS_validation)
+  execute_process(COMMAND ${WORK_DIR}/embed/embed builtin:ring ${WORK_DIR}/ring.ppm RESULT_VARIABLE result
+                  OUTPUT_VARIABLE output ERROR_VARIABLE output)
+  if(NOT result EQUAL 0 OR output MATCHES "Validation")
+    message(FATAL_ERROR "embed ended with ${result}:\n${output}")
+  endif()
+  # 320 × 240 pixels of three bytes behind their header.
+  file(SIZE ${WORK_DIR}/ring.ppm size)
+  if(NOT size EQUAL 230415)
+    message(FATAL_ERROR "ring.ppm has ${size} bytes")
+  endif()
 endif()
 
 # The installed program needs nothing of the build folder.
 run(${prefix}/bin/nephroid scenes --json)
-foreach(file include/nephroid/nephroid.h share/man/man1/nephroid.1 share/bash-completion/completions/nephroid)
+foreach(file include/nephroid/nephroid.h include/nephroid/vulkan.h share/man/man1/nephroid.1 share/bash-completion/completions/nephroid)
   if(NOT EXISTS ${prefix}/${file})
     message(FATAL_ERROR "not installed: ${file}")
   endif()
