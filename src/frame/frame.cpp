@@ -72,15 +72,15 @@ struct RealtimeFrame::PassablePush {
 
 /// What is compiled, once the scene is known.
 struct RealtimeFrame::Passes {
-  /// @param seen  constants of shade.comp: what the camera may see that is no receiver
-  Passes(gpu::Device& device, const SceneTraits& traits, const std::vector<gpu::Constant>& seen)
+  /// @param lights  constants of shade.comp: what shines, also what the camera sees of it
+  Passes(gpu::Device& device, const SceneTraits& traits, const std::vector<gpu::Constant>& lights)
       : visibility(draw(device, traits, shaders::visibility_frag, {.format = kSeenFormat}, true, "visibility")),
         shade(device,
               {.shader = shaders::shade_comp,
-               .bindings = SceneBuffers::bindings({kTexture, kTexture, kTexture, kTexture, kTable, kTexture, kTexture,
+               .bindings = SceneBuffers::bindings({kTexture, kTexture, kTexture, kTable, kTable, kTexture, kTexture,
                                                    kTexture, kTexture, kStorage, kStorage}),
                .push_bytes = sizeof(ShadePush),
-               .constants = join(traits.constants(), seen)},
+               .constants = join(traits.constants(), lights)},
               "shade"),
         geometry_layer(device,
                        {.shader = shaders::geometry_layer_comp,
@@ -130,8 +130,8 @@ RealtimeFrame::RealtimeFrame(gpu::Device& device, const SceneData& scene, const 
   uploadLamps();
   makeTargets();
   recorder_.submit();
-  makePasses();
   light_grids_ = std::make_unique<LightGrids>(device, scene, *buffers_, settings.shadow_size, settings.seed);
+  makePasses();
   if (settings.specular && buffers_->traits().specular.present) makeSpecular();
   reset();
 }
@@ -158,10 +158,10 @@ void RealtimeFrame::makeTargets() {
   }
 }
 
-std::vector<gpu::Constant> RealtimeFrame::skyConstants() const {
+std::vector<gpu::Constant> RealtimeFrame::lightConstants() const {
   const bool has_environment = scene_.environment && scene_.environment->radiance;
   const bool emits = std::ranges::any_of(scene_.materials, [](const Material& m) { return m.emits(); });
-  return {{5, has_environment}, {6, lamp_count_ > 0}, {7, emits}};
+  return join({{5, has_environment}, {6, lamps_compiled_}, {7, emits}}, lights_compiled_.constants());
 }
 
 void RealtimeFrame::makeSpecular() {
@@ -170,14 +170,19 @@ void RealtimeFrame::makeSpecular() {
   if (!tree_) tree_ = std::make_unique<TriangleTree>(device_, recorder_, scene_);
   const SpecularPass::Inputs inputs{camera_view_,         seen_,         tint_, lamps_, environment_,
                                     environment_sampler_, *light_grids_, *tree_};
-  specular_ = std::make_unique<SpecularPass>(device_, recorder_, *buffers_, inputs, skyConstants(),
+  specular_ = std::make_unique<SpecularPass>(device_, recorder_, *buffers_, inputs, lightConstants(),
                                              settings_.specular_alpha, settings_.max_events);
   recorder_.submit();
 }
 
 void RealtimeFrame::makePasses() {
   lamps_compiled_ = lamp_count_ > 0;
-  passes_ = std::make_unique<Passes>(device_, buffers_->traits(), skyConstants());
+  lights_compiled_ = light_grids_->traits();
+  passes_ = std::make_unique<Passes>(device_, buffers_->traits(), lightConstants());
+}
+
+bool RealtimeFrame::lightsAreCompiled() const {
+  return (lamps_compiled_ || lamp_count_ == 0) && lights_compiled_.cover(light_grids_->traits());
 }
 
 void RealtimeFrame::uploadLamps() {
@@ -205,7 +210,7 @@ void RealtimeFrame::lightChanged(std::size_t index) {
   recorder_.begin();
   uploadLamps();
   recorder_.submit();
-  if (lamp_count_ > 0 && !lamps_compiled_) {
+  if (!lightsAreCompiled()) {
     makePasses();
     if (specular_) makeSpecular();
   }
@@ -218,6 +223,7 @@ void RealtimeFrame::objectsMoved() {
   buffers_->updateInstances(device_, recorder_, scene_);
   recorder_.submit();
   light_grids_->geometryChanged();
+  if (!lightsAreCompiled()) makePasses();
   if (specular_) {
     specular_.reset();
     tree_.reset();

@@ -67,8 +67,10 @@ class RealtimeFrame {
   void makeTargets();
   void makePasses();
   void makeSpecular();
-  /// Of frame/sky.glsl: what the camera may see that is no receiver.
-  std::vector<gpu::Constant> skyConstants() const;
+  /// Of frame/sky.glsl and frame/lights.glsl: what shines, as it was when the passes were compiled.
+  std::vector<gpu::Constant> lightConstants() const;
+  /// Whether the passes that are compiled know all that shines now.
+  bool lightsAreCompiled() const;
   void recordVisibility(vec2 film_offset, std::uint32_t frame, bool geometry_only);
   void recordTint(vec2 film_offset, std::uint32_t frame);
   void recordShade(vec2 film_offset, std::uint32_t frame);
@@ -97,6 +99,7 @@ class RealtimeFrame {
   gpu::Sampler environment_sampler_;
   std::uint32_t lamp_count_ = 0;
   bool lamps_compiled_ = false;
+  LightTraits lights_compiled_;
   std::vector<gpu::PassTime> times_;
   std::uint32_t samples_ = 0;
 };

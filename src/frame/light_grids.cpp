@@ -33,6 +33,14 @@ std::uint64_t headsOf(std::uint32_t grid_size) {
   return fine + fine / (std::uint64_t{kCoarseCell} * kCoarseCell);
 }
 
+void setGrid(LightRecord& light, const std::vector<ViewRecord>& views, std::uint32_t size) {
+  light.grid_size = size;
+  if (views.size() != 1) return;
+  const float half = 0.5F * static_cast<float>(size);
+  light.grid_row_x = half * (views[0].clip_row_x + views[0].clip_row_w);
+  light.grid_row_y = half * (views[0].clip_row_y + views[0].clip_row_w);
+}
+
 std::uint32_t chooseGridSize(std::uint32_t wanted, std::size_t lights) {
   std::uint32_t size = std::max(wanted / kCoarseCell * kCoarseCell, kCoarseCell);
   while (size > kMinGridSize && 4 * headsOf(size) * lights > kMaxHeadBytes) size = size / 2 / kCoarseCell * kCoarseCell;
@@ -115,10 +123,10 @@ bool LightGrids::makeViews(std::uint32_t sample) {
       light.views = view ? view->views : std::vector<ViewRecord>{};
       light.varies = !view || view->varies;
       light.record.has_size = view && view->varies ? 1 : 0;
+      setGrid(light.record, light.views, grid_size_);
       changed = true;
     }
-    light.record.first_view = first_view;
-    light.record.grid_size = grid_size_;
+    light.first_view = first_view;
     first_view += static_cast<std::uint32_t>(light.views.size());
   }
   return changed || !light_table_.valid();
@@ -132,6 +140,8 @@ void LightGrids::uploadTables(gpu::CommandRecorder& recorder) {
     views.insert(views.end(), light.views.begin(), light.views.end());
   }
   light_table_ = makeTable<LightRecord>(device_, recorder, records, "lights");
+  lights_buffer_ =
+      gpu::makeBuffer<LightRecord>(device_, recorder, records, VK_BUFFER_USAGE_STORAGE_BUFFER_BIT, "lights");
   view_table_ = makeTable<ViewRecord>(device_, recorder, views, "views of lights");
 }
 
@@ -171,7 +181,7 @@ void LightGrids::build(gpu::CommandRecorder& recorder, std::uint32_t index) {
         if (mayShow(light.views[v], draw.bounds)) view_mask |= 1U << v;
       if (view_mask == 0) continue;
       const std::uint32_t triangles = draw.index_count / 3;
-      commands.pushConstants(GridPush{draw.instance, triangles, index, light.record.first_view, light.record.view_count,
+      commands.pushConstants(GridPush{draw.instance, triangles, index, light.first_view, light.record.view_count,
                                       view_mask, light.record.grid_size, light.first_node, light.node_capacity,
                                       bounds_.lower, bounds_.upper, source});
       commands.dispatch(gpu::groupsOf(triangles, 64));
@@ -197,16 +207,16 @@ bool LightGrids::checkCapacity() {
 std::vector<gpu::Bound> LightGrids::bound(std::uint32_t first) const {
   const gpu::Sampler& sampler = buffers_.sampler();
   return {{first, light_table_, sampler},
-          {first + 1, view_table_, sampler},
-          {first + 2, heads_, sampler},
-          {first + 3, nodes_, sampler}};
+          {first + 1, heads_, sampler},
+          {first + 2, nodes_, sampler},
+          {first + 3, lights_buffer_}};
 }
 
 std::vector<gpu::Use> LightGrids::uses() const {
   return {{light_table_, Access::kComputeRead},
-          {view_table_, Access::kComputeRead},
           {heads_, Access::kComputeRead},
-          {nodes_, Access::kComputeRead}};
+          {nodes_, Access::kComputeRead},
+          {lights_buffer_, Access::kComputeRead}};
 }
 
 }  // namespace nephroid

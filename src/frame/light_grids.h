@@ -35,6 +35,8 @@ class LightGrids {
 
   /// Bindings of frame/lights.glsl, from `first` on.
   static constexpr std::uint32_t kBindings = 4;
+  /// What those passes are compiled for.
+  LightTraits traits() const { return light_views_->traits(); }
   std::vector<gpu::Bound> bound(std::uint32_t first) const;
   std::vector<gpu::Use> uses() const;
 
@@ -42,6 +44,7 @@ class LightGrids {
   struct Light {
     LightRecord record{};
     std::vector<ViewRecord> views;
+    std::uint32_t first_view = 0;  ///< of all lights' views
     std::uint32_t first_node = 0, node_capacity = 0;
     bool built = false;  ///< and still true
     bool varies = true;
@@ -65,7 +68,7 @@ class LightGrids {
   std::uint32_t grid_size_;
   gpu::ComputePipeline pipeline_;
   gpu::Image light_table_, view_table_, heads_, nodes_;
-  gpu::Buffer counters_;
+  gpu::Buffer lights_buffer_, counters_;
   std::vector<Light> lights_;
 };
 

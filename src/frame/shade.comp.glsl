@@ -2,6 +2,7 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_scalar_block_layout : require
+#extension GL_EXT_control_flow_attributes : require
 #define NEPHROID_LIGHT_BINDINGS 7
 #include "frame/lights.glsl"
 #include "frame/passable.glsl"
@@ -49,7 +50,7 @@ Shaded shade(Ray ray, uvec2 seen, uvec2 pixel) {
   if (dot(s.shading, -ray.dir) <= 1e-4) s.shading = s.geometric;
   bool has_interface = m.optics.alpha >= specular_alpha && (kSceneHasMetal || kSceneHasGloss);
   if (m.base_weight <= 0.0 && !has_interface) return result;
-  for (uint i = 0u; i < light_count; ++i) result.direct += weight * lightFrom(i, s, m, -ray.dir, specular_alpha);
+  result.direct = weight * lightFromAll(light_count, s, m, -ray.dir, specular_alpha);
   return result;
 }
 

@@ -41,19 +41,19 @@ gpu::Image makeBandTable(gpu::Device& device, gpu::CommandRecorder& recorder) {
   return makeTexelTable(device, recorder, kFloat4, std::as_bytes(std::span(texels)), "bands");
 }
 
-std::vector<gpu::Constant> constantsOf(const SceneTraits& traits, const std::vector<gpu::Constant>& sky) {
+std::vector<gpu::Constant> constantsOf(const SceneTraits& traits, const std::vector<gpu::Constant>& lights) {
   const SpecularTraits& s = traits.specular;
   std::vector<gpu::Constant> constants{{0, s.metal},         {1, true},    {2, traits.conductors}, {3, traits.textures},
                                        {4, traits.passable}, {8, s.rough}, {9, s.transmits},       {10, s.media},
                                        {11, s.disperses}};
-  constants.insert(constants.end(), sky.begin(), sky.end());
+  constants.insert(constants.end(), lights.begin(), lights.end());
   return constants;
 }
 
 }  // namespace
 
 SpecularPass::SpecularPass(gpu::Device& device, gpu::CommandRecorder& recorder, const SceneBuffers& buffers,
-                           const Inputs& inputs, const std::vector<gpu::Constant>& sky, float specular_alpha,
+                           const Inputs& inputs, const std::vector<gpu::Constant>& lights, float specular_alpha,
                            std::uint32_t max_events)
     : buffers_(buffers),
       inputs_(inputs),
@@ -66,10 +66,10 @@ SpecularPass::SpecularPass(gpu::Device& device, gpu::CommandRecorder& recorder, 
             "list of specular pixels"),
       follow_(device,
               {.shader = shaders::specular_comp,
-               .bindings = SceneBuffers::bindings({kTexture, kTexture, kTexture, kTexture, kTable, kTexture, kTexture,
+               .bindings = SceneBuffers::bindings({kTexture, kTexture, kTexture, kTable, kTable, kTexture, kTexture,
                                                    kTexture, kTexture, kTable, kStorage, kTexture, kTexture}),
                .push_bytes = sizeof(SpecularPush),
-               .constants = constantsOf(buffers.traits(), sky)},
+               .constants = constantsOf(buffers.traits(), lights)},
               "specular"),
       bands_(makeBandTable(device, recorder)) {
   const gpu::ImageDesc& seen = inputs.seen.desc();

@@ -33,10 +33,10 @@ class SpecularPass {
     const TriangleTree& tree;
   };
 
-  /// Records the upload of tables. @param sky  constants of frame/sky.glsl: what may be seen that is no receiver
+  /// Records the upload of tables. @param lights  constants of frame/sky.glsl and frame/lights.glsl: what shines
   /// @throws ResourceError
   SpecularPass(gpu::Device& device, gpu::CommandRecorder& recorder, const SceneBuffers& buffers, const Inputs& inputs,
-               const std::vector<gpu::Constant>& sky, float specular_alpha, std::uint32_t max_events);
+               const std::vector<gpu::Constant>& lights, float specular_alpha, std::uint32_t max_events);
 
   /// Adds a sample to the sum, once the frame's visibility is drawn.
   void record(gpu::CommandRecorder& recorder, const SpecularSample& sample);
