@@ -121,7 +121,7 @@ bool LightGrids::makeViews(std::uint32_t sample) {
       const std::optional<LightView> view = light_views_->make(i, sample);
       light.record = view ? view->light : LightRecord{};
       light.views = view ? view->views : std::vector<ViewRecord>{};
-      light.varies = !view || view->varies;
+      light.varies = view ? view->varies : !light_views_->isOut(i);
       light.record.has_size = view && view->varies ? 1 : 0;
       setGrid(light.record, light.views, grid_size_);
       changed = true;

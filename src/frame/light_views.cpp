@@ -98,13 +98,18 @@ LightTraits LightViews::traits() const {
   return traits;
 }
 
+bool LightViews::isOut(std::size_t index) const {
+  const Source& source = sources_[index];
+  return source.kind == Kind::kPunctual && !(luminance(scene_.lights[source.index].intensity) > 0.0F);
+}
+
 std::optional<LightView> LightViews::make(std::size_t index, std::uint32_t sample) const {
   Sampler sampler(seed_, kFirstStream + static_cast<std::uint32_t>(index), sample);
   const Source& source = sources_[index];
   const vec2 u = sampler.next2D();
   switch (source.kind) {
     case Kind::kPunctual:
-      if (!(luminance(scene_.lights[source.index].intensity) > 0.0F)) return std::nullopt;
+      if (isOut(index)) return std::nullopt;
       return makePunctual(scene_.lights[source.index], u);
     case Kind::kMesh:
       return makeMesh(mesh_lights_[source.index], u);

@@ -44,6 +44,8 @@ class LightViews {
   std::size_t count() const { return sources_.size(); }
   /// Of all sources, whether or not they shine; reads the scene's lights as they are now.
   LightTraits traits() const;
+  /// Whether a source does not shine in any sample, until the scene's lights are others.
+  bool isOut(std::size_t index) const;
   /// View `index` of sample `sample`; nothing if it does not shine. Reads the scene's lights as they are now.
   std::optional<LightView> make(std::size_t index, std::uint32_t sample) const;
 

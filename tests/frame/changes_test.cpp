@@ -66,6 +66,21 @@ TEST_F(ChangesTest, LightsMayGoOutAndBecomeLamps) {
   EXPECT_GT(*std::max_element(emission.pixels.begin(), emission.pixels.end()), 0.0F);
 }
 
+TEST_F(ChangesTest, LightsThatStayOrAreOutCostNothing) {
+  SceneData scene = makeBalls();
+  scene.lights[0].intensity = vec3(0);
+  RealtimeFrame frame(device(), scene, lookAtBall(), kSmall);
+  frame.render(0);
+  EXPECT_EQ(countPasses(frame, "light grid"), 1);
+  frame.render(1);
+  EXPECT_EQ(countPasses(frame, "light grid"), 0);
+  EXPECT_EQ(countPasses(frame, "upload"), 1) << "more than the camera";
+  scene.lights[0].intensity = vec3(60);
+  frame.lightChanged(0);
+  frame.render(0);
+  EXPECT_EQ(frame.readSummed("direct").pixels, renderAnew(scene, lookAtBall(), kSmall).pixels);
+}
+
 TEST_F(ChangesTest, LightsBecomeOthersThanThePassesWereCompiledFor) {
   SceneData scene = makeBalls();
   scene.lights.erase(scene.lights.begin());
