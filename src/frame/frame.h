@@ -21,7 +21,7 @@ namespace nephroid {
 
 struct FrameSettings {
   int width = 1024, height = 768;
-  std::uint32_t shadow_size = 256;  ///< cells along a side of each view of a light; bears on speed only
+  std::uint32_t shadow_size = 256;  ///< cells along a side of each view of a light that varies; bears on speed only
   float specular_alpha = 0.25F;     ///< microfacets finer than this are class S
   bool specular = true;             ///< makes that layer, which takes longer than all others
   std::uint32_t max_events = 12;    ///< of class S, in what is seen in mirrors and through glass

@@ -14,10 +14,14 @@ using gpu::Bound;
 using gpu::PassCommands;
 using gpu::Use;
 
-/// Of the heads of all lights together.
-constexpr std::uint64_t kMaxHeadBytes = std::uint64_t{96} << 20;
+/// Of the heads of all lights together; of one they then have no more rows than any device's images.
+constexpr std::uint64_t kMaxHeadBytes = std::uint64_t{64} << 20;
 /// Cells along a side of a view: enough for lists to be short, and what no scene needs more of.
 constexpr std::uint32_t kMinGridSize = 32;
+
+/// Lights that stay have so many times as many cells along a side as those that vary: their grids are made once, so
+/// that only their memory counts against short lists.
+constexpr std::uint32_t kFinerIfStaying = 2;
 
 /// Pushed by light_grid.comp.
 struct GridPush {
@@ -27,9 +31,9 @@ struct GridPush {
   vec4 source;
 };
 
-/// Heads of one light that has six views.
+/// Heads of one light that has six views and stays.
 std::uint64_t headsOf(std::uint32_t grid_size) {
-  const std::uint64_t fine = std::uint64_t{6} * grid_size * grid_size;
+  const std::uint64_t size = std::uint64_t{kFinerIfStaying} * grid_size, fine = 6 * size * size;
   return fine + fine / (std::uint64_t{kCoarseCell} * kCoarseCell);
 }
 
@@ -123,7 +127,7 @@ bool LightGrids::makeViews(std::uint32_t sample) {
       light.views = view ? view->views : std::vector<ViewRecord>{};
       light.varies = view ? view->varies : !light_views_->isOut(i);
       light.record.has_size = view && view->varies ? 1 : 0;
-      setGrid(light.record, light.views, grid_size_);
+      setGrid(light.record, light.views, light.varies ? grid_size_ : kFinerIfStaying * grid_size_);
       changed = true;
     }
     light.first_view = first_view;

@@ -14,7 +14,8 @@ namespace nephroid {
 /// Not thread-safe. Device, scene and buffers must outlive it.
 class LightGrids {
  public:
-  /// @param grid_size  cells along a side of each view; fewer are taken if the lights are many
+  /// @param grid_size  cells along a side of each view of a light that varies, half as many as of one that stays; fewer
+  ///                   are taken if the lights are many
   /// @throws ResourceError
   LightGrids(gpu::Device& device, const SceneData& scene, const SceneBuffers& buffers, std::uint32_t grid_size,
              std::uint32_t seed);
