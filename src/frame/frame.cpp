@@ -10,6 +10,7 @@
 #include "core/optics/surface.shared.h"
 #include "core/sampling/sampler.h"
 #include "frame/lamps.h"
+#include "frame/passes.h"
 #include "frame/table.h"
 #include "frame/view.h"
 #include "nephroid/error.h"
@@ -23,22 +24,12 @@
 namespace nephroid {
 namespace {
 
-using gpu::Access;
-using gpu::Bound;
-using gpu::PassCommands;
-using gpu::Use;
-
 constexpr VkFormat kSeenFormat = VK_FORMAT_R32G32_UINT;
 constexpr VkFormat kDepthFormat = VK_FORMAT_D32_SFLOAT;
-constexpr VkFormat kFloat4 = VK_FORMAT_R32G32B32A32_SFLOAT;
 /// Threads of a group along each side, in every pass over pixels.
 constexpr std::uint32_t kGroup = 8;
 /// Stream of the sampler that places samples in pixels; the same place in all pixels of a frame.
 constexpr std::uint32_t kFilmStream = 0x0F110000U;
-
-constexpr VkDescriptorType kTable = VK_DESCRIPTOR_TYPE_STORAGE_BUFFER;
-constexpr VkDescriptorType kTexture = VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER;
-constexpr VkDescriptorType kStorage = VK_DESCRIPTOR_TYPE_STORAGE_IMAGE;
 
 gpu::Image makePixels(gpu::Device& device, const FrameSettings& settings, VkFormat format, VkImageUsageFlags usage,
                       const char* name) {
@@ -49,13 +40,6 @@ gpu::Image makePixels(gpu::Device& device, const FrameSettings& settings, VkForm
                      .usage = usage},
                     name);
 }
-
-/// Pushed by shade.comp.
-struct ShadePush {
-  vec2 film_offset;
-  std::uint32_t frame, light_count, lamp_count;
-  float specular_alpha, environment_scale, cos_rotation, sin_rotation;
-};
 
 std::vector<gpu::Constant> join(std::vector<gpu::Constant> first, const std::vector<gpu::Constant>& second) {
   first.insert(first.end(), second.begin(), second.end());
@@ -79,7 +63,7 @@ struct RealtimeFrame::Passes {
               {.shader = shaders::shade_comp,
                .bindings = SceneBuffers::bindings({kTexture, kTexture, kTexture, kTable, kTable, kTexture, kTexture,
                                                    kTexture, kTexture, kStorage, kStorage}),
-               .push_bytes = sizeof(ShadePush),
+               .push_bytes = sizeof(SamplePush),
                .constants = join(traits.constants(), lights)},
               "shade"),
         geometry_layer(device,
@@ -170,8 +154,8 @@ void RealtimeFrame::makeSpecular() {
   if (!tree_) tree_ = std::make_unique<TriangleTree>(device_, recorder_, scene_);
   const SpecularPass::Inputs inputs{camera_view_,         seen_,         tint_, lamps_, environment_,
                                     environment_sampler_, *light_grids_, *tree_};
-  specular_ = std::make_unique<SpecularPass>(device_, recorder_, *buffers_, inputs, lightConstants(),
-                                             settings_.specular_alpha, settings_.max_events);
+  specular_ =
+      std::make_unique<SpecularPass>(device_, recorder_, *buffers_, inputs, lightConstants(), settings_.max_events);
   recorder_.submit();
 }
 
@@ -270,8 +254,9 @@ void RealtimeFrame::render(std::uint32_t sample) {
   recorder_.begin();
   recordVisibility(film_offset, sample, false);
   if (buffers_->traits().passable) recordTint(film_offset, sample);
-  recordShade(film_offset, sample);
-  if (specular_) recordSpecular(film_offset, sample);
+  const SamplePush push = samplePush(film_offset, sample);
+  recordShade(push);
+  if (specular_) specular_->record(recorder_, push);
   recorder_.submit();
   recorder_.wait();
   times_.insert(times_.end(), recorder_.passTimes().begin(), recorder_.passTimes().end());
@@ -336,17 +321,20 @@ void RealtimeFrame::recordTint(vec2 film_offset, std::uint32_t frame) {
       });
 }
 
-void RealtimeFrame::recordShade(vec2 film_offset, std::uint32_t frame) {
+SamplePush RealtimeFrame::samplePush(vec2 film_offset, std::uint32_t frame) const {
   const bool present = scene_.environment && scene_.environment->radiance;
   const float rotation = present ? radians(scene_.environment->rotation_deg) : 0.0F;
-  const ShadePush push{film_offset,
-                       frame,
-                       light_grids_->lightCount(),
-                       lamp_count_,
-                       settings_.specular_alpha,
-                       present ? scene_.environment->scale : 0.0F,
-                       std::cos(rotation),
-                       std::sin(rotation)};
+  return {.film_offset = film_offset,
+          .frame = frame,
+          .light_count = light_grids_->lightCount(),
+          .lamp_count = lamp_count_,
+          .specular_alpha = settings_.specular_alpha,
+          .environment_scale = present ? scene_.environment->scale : 0.0F,
+          .cos_rotation = std::cos(rotation),
+          .sin_rotation = std::sin(rotation)};
+}
+
+void RealtimeFrame::recordShade(const SamplePush& push) {
   std::vector<Use> uses = buffers_->uses(
       Access::kComputeRead,
       {Use(camera_view_, Access::kComputeRead), Use(seen_, Access::kComputeRead), Use(tint_, Access::kComputeRead),
@@ -366,13 +354,6 @@ void RealtimeFrame::recordShade(vec2 film_offset, std::uint32_t frame) {
     commands.pushConstants(push);
     commands.dispatch(gpu::groupsOf(seen_.desc().width, kGroup), gpu::groupsOf(seen_.desc().height, kGroup));
   });
-}
-
-void RealtimeFrame::recordSpecular(vec2 film_offset, std::uint32_t frame) {
-  const bool present = scene_.environment && scene_.environment->radiance;
-  const float rotation = present ? radians(scene_.environment->rotation_deg) : 0.0F;
-  specular_->record(recorder_, {film_offset, frame, lamp_count_, present ? scene_.environment->scale : 0.0F,
-                                std::cos(rotation), std::sin(rotation)});
 }
 
 namespace {

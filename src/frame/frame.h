@@ -13,6 +13,7 @@
 #include "core/optics/surface.shared.h"
 #include "frame/light_grids.h"
 #include "frame/raster.h"
+#include "frame/sample_push.shared.h"
 #include "frame/scene_buffers.h"
 #include "frame/specular_pass.h"
 #include "gpu/commands.h"
@@ -73,8 +74,8 @@ class RealtimeFrame {
   bool lightsAreCompiled() const;
   void recordVisibility(vec2 film_offset, std::uint32_t frame, bool geometry_only);
   void recordTint(vec2 film_offset, std::uint32_t frame);
-  void recordShade(vec2 film_offset, std::uint32_t frame);
-  void recordSpecular(vec2 film_offset, std::uint32_t frame);
+  SamplePush samplePush(vec2 film_offset, std::uint32_t frame) const;
+  void recordShade(const SamplePush& push);
   /// @param draws  of the scene, by index
   void drawScene(gpu::PassCommands& commands, const std::vector<std::size_t>& draws);
   std::vector<gpu::Use> drawUses(std::initializer_list<gpu::Use> targets) const;

@@ -2,17 +2,13 @@
 
 #include <algorithm>
 
+#include "frame/passes.h"
 #include "frame/table.h"
 #include "frame/view.h"
 #include "shaders/frame/light_grid.comp.h"
 
 namespace nephroid {
 namespace {
-
-using gpu::Access;
-using gpu::Bound;
-using gpu::PassCommands;
-using gpu::Use;
 
 /// Of the heads of all lights together; of one they then have no more rows than any device's images.
 constexpr std::uint64_t kMaxHeadBytes = std::uint64_t{64} << 20;
@@ -64,9 +60,7 @@ LightGrids::LightGrids(gpu::Device& device, const SceneData& scene, const SceneB
       grid_size_(chooseGridSize(grid_size, light_views_->count())),
       pipeline_(device,
                 {.shader = shaders::light_grid_comp,
-                 .bindings = SceneBuffers::bindings({VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER,
-                                                     VK_DESCRIPTOR_TYPE_STORAGE_IMAGE, VK_DESCRIPTOR_TYPE_STORAGE_IMAGE,
-                                                     VK_DESCRIPTOR_TYPE_STORAGE_BUFFER}),
+                 .bindings = SceneBuffers::bindings({kTexture, kStorage, kStorage, kTable}),
                  .push_bytes = sizeof(GridPush),
                  .constants = buffers.traits().constants()},
                 "light grid") {
