@@ -1,18 +1,11 @@
 #include "frame/caustic_pass.h"
 
+#include "frame/passes.h"
 #include "shaders/frame/caustic.comp.h"
 
 namespace nephroid {
 namespace {
 
-using gpu::Access;
-using gpu::Bound;
-using gpu::PassCommands;
-using gpu::Use;
-
-constexpr VkDescriptorType kTable = VK_DESCRIPTOR_TYPE_STORAGE_BUFFER;
-constexpr VkDescriptorType kTexture = VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER;
-constexpr VkDescriptorType kStorage = VK_DESCRIPTOR_TYPE_STORAGE_IMAGE;
 /// Threads of a group along each side.
 constexpr std::uint32_t kGroup = 8;
 
@@ -23,7 +16,7 @@ struct CausticPush {
 
 gpu::Image makeSum(gpu::Device& device, const gpu::Image& like, const char* name) {
   return {device,
-          {.format = VK_FORMAT_R32G32B32A32_SFLOAT,
+          {.format = kFloat4,
            .width = like.desc().width,
            .height = like.desc().height,
            .usage = VK_IMAGE_USAGE_STORAGE_BIT | VK_IMAGE_USAGE_SAMPLED_BIT},

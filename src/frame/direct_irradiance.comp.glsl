@@ -2,6 +2,7 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_scalar_block_layout : require
+#extension GL_EXT_control_flow_attributes : require
 #define NEPHROID_LIGHT_BINDINGS 7
 #include "frame/lights.glsl"
 #define NEPHROID_PIXEL_BINDINGS 11

@@ -1,14 +1,10 @@
 #include "frame/direct_irradiance.h"
 
+#include "frame/passes.h"
 #include "shaders/frame/direct_irradiance.comp.h"
 
 namespace nephroid {
 namespace {
-
-using gpu::Access;
-using gpu::Bound;
-using gpu::PassCommands;
-using gpu::Use;
 
 /// Threads of a group along each side.
 constexpr std::uint32_t kGroup = 8;
@@ -21,9 +17,7 @@ struct DirectPush {
 };
 
 std::vector<gpu::Binding> describeBindings() {
-  constexpr VkDescriptorType kTexture = VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER;
-  constexpr VkDescriptorType kStorage = VK_DESCRIPTOR_TYPE_STORAGE_IMAGE;
-  std::vector<gpu::Binding> bindings = SceneBuffers::bindings({kTexture, kTexture, kTexture, kTexture});
+  std::vector<gpu::Binding> bindings = SceneBuffers::bindings({kTexture, kTexture, kTexture, kTable});
   std::vector<VkDescriptorType> types = PixelSurfaces::descriptorTypes();
   types.insert(types.end(), {kStorage, kStorage});
   for (const VkDescriptorType type : types) bindings.push_back({static_cast<std::uint32_t>(bindings.size()), type});

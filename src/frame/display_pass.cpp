@@ -1,6 +1,7 @@
 #include "frame/display_pass.h"
 
 #include "core/assert.h"
+#include "frame/passes.h"
 #include "shaders/frame/compose.comp.h"
 #include "shaders/frame/display.comp.h"
 #include "shaders/frame/exposure.comp.h"
@@ -8,14 +9,6 @@
 namespace nephroid {
 namespace {
 
-using gpu::Access;
-using gpu::Bound;
-using gpu::PassCommands;
-using gpu::Use;
-
-constexpr VkDescriptorType kTable = VK_DESCRIPTOR_TYPE_STORAGE_BUFFER;
-constexpr VkDescriptorType kTexture = VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER;
-constexpr VkDescriptorType kStorage = VK_DESCRIPTOR_TYPE_STORAGE_IMAGE;
 /// Threads of a group along each side.
 constexpr std::uint32_t kGroup = 8;
 constexpr std::uint32_t kMostLayers = 4;
@@ -39,11 +32,7 @@ DisplayPush describe(std::size_t layers, float weight, const std::optional<Frame
 
 DisplayPass::DisplayPass(gpu::Device& device, std::uint32_t width, std::uint32_t height)
     : sampler_(device, {.filter = VK_FILTER_NEAREST}, "layers"),
-      picture_(device,
-               {.format = VK_FORMAT_R32G32B32A32_SFLOAT,
-                .width = width,
-                .height = height,
-                .usage = VK_IMAGE_USAGE_STORAGE_BIT},
+      picture_(device, {.format = kFloat4, .width = width, .height = height, .usage = VK_IMAGE_USAGE_STORAGE_BIT},
                "picture"),
       histogram_(makeWords(device, kHistogramCells, "histogram")),
       exposure_(makeWords(device, 1, "exposure")),

@@ -10,6 +10,7 @@
 #include "core/optics/surface.shared.h"
 #include "core/sampling/sampler.h"
 #include "frame/lamps.h"
+#include "frame/passes.h"
 #include "frame/table.h"
 #include "frame/view.h"
 #include "nephroid/error.h"
@@ -23,22 +24,12 @@
 namespace nephroid {
 namespace {
 
-using gpu::Access;
-using gpu::Bound;
-using gpu::PassCommands;
-using gpu::Use;
-
 constexpr VkFormat kSeenFormat = VK_FORMAT_R32G32_UINT;
 constexpr VkFormat kDepthFormat = VK_FORMAT_D32_SFLOAT;
-constexpr VkFormat kFloat4 = VK_FORMAT_R32G32B32A32_SFLOAT;
 /// Threads of a group along each side, in every pass over pixels.
 constexpr std::uint32_t kGroup = 8;
 /// Stream of the sampler that places samples in pixels; the same place in all pixels of a frame.
 constexpr std::uint32_t kFilmStream = 0x0F110000U;
-
-constexpr VkDescriptorType kTable = VK_DESCRIPTOR_TYPE_STORAGE_BUFFER;
-constexpr VkDescriptorType kTexture = VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER;
-constexpr VkDescriptorType kStorage = VK_DESCRIPTOR_TYPE_STORAGE_IMAGE;
 
 gpu::Image makePixels(gpu::Device& device, const FrameSettings& settings, VkFormat format, VkImageUsageFlags usage,
                       const char* name) {
@@ -49,13 +40,6 @@ gpu::Image makePixels(gpu::Device& device, const FrameSettings& settings, VkForm
                      .usage = usage},
                     name);
 }
-
-/// Pushed by shade.comp.
-struct ShadePush {
-  vec2 film_offset;
-  std::uint32_t frame, light_count, lamp_count;
-  float specular_alpha, environment_scale, cos_rotation, sin_rotation;
-};
 
 std::vector<gpu::Constant> join(std::vector<gpu::Constant> first, const std::vector<gpu::Constant>& second) {
   first.insert(first.end(), second.begin(), second.end());
@@ -72,15 +56,15 @@ struct RealtimeFrame::PassablePush {
 
 /// What is compiled, once the scene is known.
 struct RealtimeFrame::Passes {
-  /// @param seen  constants of shade.comp: what the camera may see that is no receiver
-  Passes(gpu::Device& device, const SceneTraits& traits, const std::vector<gpu::Constant>& seen)
+  /// @param lights  constants of shade.comp: what shines, also what the camera sees of it
+  Passes(gpu::Device& device, const SceneTraits& traits, const std::vector<gpu::Constant>& lights)
       : visibility(draw(device, traits, shaders::visibility_frag, {.format = kSeenFormat}, true, "visibility")),
         shade(device,
               {.shader = shaders::shade_comp,
-               .bindings = SceneBuffers::bindings({kTexture, kTexture, kTexture, kTexture, kTable, kTexture, kTexture,
+               .bindings = SceneBuffers::bindings({kTexture, kTexture, kTexture, kTable, kTable, kTexture, kTexture,
                                                    kTexture, kTexture, kStorage, kStorage}),
-               .push_bytes = sizeof(ShadePush),
-               .constants = join(traits.constants(), seen)},
+               .push_bytes = sizeof(SamplePush),
+               .constants = join(traits.constants(), lights)},
               "shade"),
         geometry_layer(device,
                        {.shader = shaders::geometry_layer_comp,
@@ -131,8 +115,8 @@ RealtimeFrame::RealtimeFrame(gpu::Device& device, const SceneData& scene, const 
   uploadLamps();
   makeTargets();
   recorder_.submit();
-  makePasses();
   light_grids_ = std::make_unique<LightGrids>(device, scene, *buffers_, settings.shadow_size, settings.seed);
+  makePasses();
   if (settings.specular && buffers_->traits().specular.present) makeSpecular();
   if (make_technique)
     technique_ = make_technique({device, scene, *buffers_, *light_grids_, settings.specular_alpha, settings.seed});
@@ -163,10 +147,10 @@ void RealtimeFrame::makeTargets() {
   }
 }
 
-std::vector<gpu::Constant> RealtimeFrame::skyConstants() const {
+std::vector<gpu::Constant> RealtimeFrame::lightConstants() const {
   const bool has_environment = scene_.environment && scene_.environment->radiance;
   const bool emits = std::ranges::any_of(scene_.materials, [](const Material& m) { return m.emits(); });
-  return {{5, has_environment}, {6, lamp_count_ > 0}, {7, emits}};
+  return join({{5, has_environment}, {6, lamps_compiled_}, {7, emits}}, lights_compiled_.constants());
 }
 
 void RealtimeFrame::makeSpecular() {
@@ -175,8 +159,8 @@ void RealtimeFrame::makeSpecular() {
   if (!tree_) tree_ = std::make_unique<TriangleTree>(device_, recorder_, scene_);
   const SpecularPass::Inputs inputs{camera_view_,         seen_,         tint_, lamps_, environment_,
                                     environment_sampler_, *light_grids_, *tree_};
-  specular_ = std::make_unique<SpecularPass>(device_, recorder_, *buffers_, inputs, skyConstants(),
-                                             settings_.specular_alpha, settings_.max_events);
+  specular_ =
+      std::make_unique<SpecularPass>(device_, recorder_, *buffers_, inputs, lightConstants(), settings_.max_events);
   recorder_.submit();
 }
 
@@ -188,7 +172,12 @@ void RealtimeFrame::makeCaustic() {
 
 void RealtimeFrame::makePasses() {
   lamps_compiled_ = lamp_count_ > 0;
-  passes_ = std::make_unique<Passes>(device_, buffers_->traits(), skyConstants());
+  lights_compiled_ = light_grids_->traits();
+  passes_ = std::make_unique<Passes>(device_, buffers_->traits(), lightConstants());
+}
+
+bool RealtimeFrame::lightsAreCompiled() const {
+  return (lamps_compiled_ || lamp_count_ == 0) && lights_compiled_.cover(light_grids_->traits());
 }
 
 void RealtimeFrame::uploadLamps() {
@@ -219,7 +208,7 @@ void RealtimeFrame::lightChanged(std::size_t index) {
   recorder_.begin();
   uploadLamps();
   recorder_.submit();
-  if (lamp_count_ > 0 && !lamps_compiled_) {
+  if (!lightsAreCompiled()) {
     makePasses();
     if (specular_) makeSpecular();
   }
@@ -233,6 +222,7 @@ void RealtimeFrame::objectsMoved() {
   recorder_.submit();
   light_grids_->geometryChanged();
   if (technique_) technique_->objectsMoved();
+  if (!lightsAreCompiled()) makePasses();
   if (specular_) {
     specular_.reset();
     tree_.reset();
@@ -277,8 +267,9 @@ void RealtimeFrame::render(std::uint32_t sample) {
   recorder_.begin();
   recordVisibility(film_offset, sample, false);
   if (buffers_->traits().passable) recordTint(film_offset, sample);
-  recordShade(film_offset, sample);
-  if (specular_) recordSpecular(film_offset, sample);
+  const SamplePush push = samplePush(film_offset, sample);
+  recordShade(push);
+  if (specular_) specular_->record(recorder_, push);
   if (technique_) recordCaustic(sample);
   recorder_.submit();
   recorder_.wait();
@@ -344,17 +335,20 @@ void RealtimeFrame::recordTint(vec2 film_offset, std::uint32_t frame) {
       });
 }
 
-void RealtimeFrame::recordShade(vec2 film_offset, std::uint32_t frame) {
+SamplePush RealtimeFrame::samplePush(vec2 film_offset, std::uint32_t frame) const {
   const bool present = scene_.environment && scene_.environment->radiance;
   const float rotation = present ? radians(scene_.environment->rotation_deg) : 0.0F;
-  const ShadePush push{film_offset,
-                       frame,
-                       light_grids_->lightCount(),
-                       lamp_count_,
-                       settings_.specular_alpha,
-                       present ? scene_.environment->scale : 0.0F,
-                       std::cos(rotation),
-                       std::sin(rotation)};
+  return {.film_offset = film_offset,
+          .frame = frame,
+          .light_count = light_grids_->lightCount(),
+          .lamp_count = lamp_count_,
+          .specular_alpha = settings_.specular_alpha,
+          .environment_scale = present ? scene_.environment->scale : 0.0F,
+          .cos_rotation = std::cos(rotation),
+          .sin_rotation = std::sin(rotation)};
+}
+
+void RealtimeFrame::recordShade(const SamplePush& push) {
   std::vector<Use> uses = buffers_->uses(
       Access::kComputeRead,
       {Use(camera_view_, Access::kComputeRead), Use(seen_, Access::kComputeRead), Use(tint_, Access::kComputeRead),
@@ -374,13 +368,6 @@ void RealtimeFrame::recordShade(vec2 film_offset, std::uint32_t frame) {
     commands.pushConstants(push);
     commands.dispatch(gpu::groupsOf(seen_.desc().width, kGroup), gpu::groupsOf(seen_.desc().height, kGroup));
   });
-}
-
-void RealtimeFrame::recordSpecular(vec2 film_offset, std::uint32_t frame) {
-  const bool present = scene_.environment && scene_.environment->radiance;
-  const float rotation = present ? radians(scene_.environment->rotation_deg) : 0.0F;
-  specular_->record(recorder_, {film_offset, frame, lamp_count_, present ? scene_.environment->scale : 0.0F,
-                                std::cos(rotation), std::sin(rotation)});
 }
 
 void RealtimeFrame::recordCaustic(std::uint32_t frame) {

@@ -18,6 +18,7 @@
 #include "frame/light_grids.h"
 #include "frame/raster.h"
 #include "frame/realtime_technique.h"
+#include "frame/sample_push.shared.h"
 #include "frame/scene_buffers.h"
 #include "frame/specular_pass.h"
 #include "gpu/commands.h"
@@ -26,7 +27,7 @@ namespace nephroid {
 
 struct FrameSettings {
   int width = 1024, height = 768;
-  std::uint32_t shadow_size = 256;  ///< cells along a side of each view of a light; bears on speed only
+  std::uint32_t shadow_size = 256;  ///< cells along a side of each view of a light that varies; bears on speed only
   float specular_alpha = 0.25F;     ///< microfacets finer than this are class S
   bool specular = true;             ///< makes that layer, which takes longer than all others
   std::uint32_t max_events = 12;    ///< of class S, in what is seen in mirrors and through glass
@@ -88,12 +89,14 @@ class RealtimeFrame {
   /// Null if the frame does not make it.
   const gpu::Image* sumOf(const std::string& layer) const;
   std::vector<const gpu::Image*> sums() const;
-  /// Of frame/sky.glsl: what the camera may see that is no receiver.
-  std::vector<gpu::Constant> skyConstants() const;
+  /// Of frame/sky.glsl and frame/lights.glsl: what shines, as it was when the passes were compiled.
+  std::vector<gpu::Constant> lightConstants() const;
+  /// Whether the passes that are compiled know all that shines now.
+  bool lightsAreCompiled() const;
   void recordVisibility(vec2 film_offset, std::uint32_t frame, bool geometry_only);
   void recordTint(vec2 film_offset, std::uint32_t frame);
-  void recordShade(vec2 film_offset, std::uint32_t frame);
-  void recordSpecular(vec2 film_offset, std::uint32_t frame);
+  SamplePush samplePush(vec2 film_offset, std::uint32_t frame) const;
+  void recordShade(const SamplePush& push);
   void recordCaustic(std::uint32_t frame);
   /// @param draws  of the scene, by index
   void drawScene(gpu::PassCommands& commands, const std::vector<std::size_t>& draws);
@@ -123,6 +126,7 @@ class RealtimeFrame {
   gpu::Sampler environment_sampler_;
   std::uint32_t lamp_count_ = 0;
   bool lamps_compiled_ = false;
+  LightTraits lights_compiled_;
   std::vector<gpu::PassTime> times_;
   std::uint32_t samples_ = 0;
 };

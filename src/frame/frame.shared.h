@@ -138,9 +138,12 @@ struct LightRecord {
   vec3 normal;      // of the surface that the point lies on: the value is then times the cosine to it
   uint surface;     // kSurface…
   uint view_count;  // 6: a cube of views along ±x, ±y, ±z; 1; 0: it does not shine
-  uint first_view;
-  uint grid_size;  // cells along a side of each view
-  uint has_size;   // 1: this is one point of it, or one direction
+  uint grid_size;   // cells along a side of each view
+  uint has_size;    // 1: this is one point of it, or one direction
+  uint pad;
+  // Directional: the place on its grid, in cells, of a place in the world. Of a cube of views it follows without.
+  vec4 grid_row_x;
+  vec4 grid_row_y;
 };
 
 NEPHROID_CONST uint kLightPoint = 0u;

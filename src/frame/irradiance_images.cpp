@@ -1,12 +1,11 @@
 #include "frame/irradiance_images.h"
 
+#include "frame/passes.h"
+
 namespace nephroid {
 
-using gpu::Access;
-using gpu::Use;
-
 IrradianceImages makeIrradianceImages(gpu::Device& device, std::uint32_t width, std::uint32_t height) {
-  const gpu::ImageDesc desc{.format = VK_FORMAT_R32G32B32A32_SFLOAT,
+  const gpu::ImageDesc desc{.format = kFloat4,
                             .width = width,
                             .height = height,
                             .usage = VK_IMAGE_USAGE_STORAGE_BIT | VK_IMAGE_USAGE_SAMPLED_BIT};

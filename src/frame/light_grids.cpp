@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "frame/passes.h"
 #include "frame/table.h"
 #include "frame/view.h"
 #include "shaders/frame/light_grid.comp.h"
@@ -9,15 +10,14 @@
 namespace nephroid {
 namespace {
 
-using gpu::Access;
-using gpu::Bound;
-using gpu::PassCommands;
-using gpu::Use;
-
-/// Of the heads of all lights together.
-constexpr std::uint64_t kMaxHeadBytes = std::uint64_t{96} << 20;
+/// Of the heads of all lights together; of one they then have no more rows than any device's images.
+constexpr std::uint64_t kMaxHeadBytes = std::uint64_t{64} << 20;
 /// Cells along a side of a view: enough for lists to be short, and what no scene needs more of.
 constexpr std::uint32_t kMinGridSize = 32;
+
+/// Lights that stay have so many times as many cells along a side as those that vary: their grids are made once, so
+/// that only their memory counts against short lists.
+constexpr std::uint32_t kFinerIfStaying = 2;
 
 /// Pushed by light_grid.comp.
 struct GridPush {
@@ -27,10 +27,18 @@ struct GridPush {
   vec4 source;
 };
 
-/// Heads of one light that has six views.
+/// Heads of one light that has six views and stays.
 std::uint64_t headsOf(std::uint32_t grid_size) {
-  const std::uint64_t fine = std::uint64_t{6} * grid_size * grid_size;
+  const std::uint64_t size = std::uint64_t{kFinerIfStaying} * grid_size, fine = 6 * size * size;
   return fine + fine / (std::uint64_t{kCoarseCell} * kCoarseCell);
+}
+
+void setGrid(LightRecord& light, const std::vector<ViewRecord>& views, std::uint32_t size) {
+  light.grid_size = size;
+  if (views.size() != 1) return;
+  const float half = 0.5F * static_cast<float>(size);
+  light.grid_row_x = half * (views[0].clip_row_x + views[0].clip_row_w);
+  light.grid_row_y = half * (views[0].clip_row_y + views[0].clip_row_w);
 }
 
 std::uint32_t chooseGridSize(std::uint32_t wanted, std::size_t lights) {
@@ -52,9 +60,7 @@ LightGrids::LightGrids(gpu::Device& device, const SceneData& scene, const SceneB
       grid_size_(chooseGridSize(grid_size, light_views_->count())),
       pipeline_(device,
                 {.shader = shaders::light_grid_comp,
-                 .bindings = SceneBuffers::bindings({VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER,
-                                                     VK_DESCRIPTOR_TYPE_STORAGE_IMAGE, VK_DESCRIPTOR_TYPE_STORAGE_IMAGE,
-                                                     VK_DESCRIPTOR_TYPE_STORAGE_BUFFER}),
+                 .bindings = SceneBuffers::bindings({kTexture, kStorage, kStorage, kTable}),
                  .push_bytes = sizeof(GridPush),
                  .constants = buffers.traits().constants()},
                 "light grid") {
@@ -113,12 +119,12 @@ bool LightGrids::makeViews(std::uint32_t sample) {
       const std::optional<LightView> view = light_views_->make(i, sample);
       light.record = view ? view->light : LightRecord{};
       light.views = view ? view->views : std::vector<ViewRecord>{};
-      light.varies = !view || view->varies;
+      light.varies = view ? view->varies : !light_views_->isOut(i);
       light.record.has_size = view && view->varies ? 1 : 0;
+      setGrid(light.record, light.views, light.varies ? grid_size_ : kFinerIfStaying * grid_size_);
       changed = true;
     }
-    light.record.first_view = first_view;
-    light.record.grid_size = grid_size_;
+    light.first_view = first_view;
     first_view += static_cast<std::uint32_t>(light.views.size());
   }
   return changed || !light_table_.valid();
@@ -132,6 +138,8 @@ void LightGrids::uploadTables(gpu::CommandRecorder& recorder) {
     views.insert(views.end(), light.views.begin(), light.views.end());
   }
   light_table_ = makeTable<LightRecord>(device_, recorder, records, "lights");
+  lights_buffer_ =
+      gpu::makeBuffer<LightRecord>(device_, recorder, records, VK_BUFFER_USAGE_STORAGE_BUFFER_BIT, "lights");
   view_table_ = makeTable<ViewRecord>(device_, recorder, views, "views of lights");
 }
 
@@ -171,7 +179,7 @@ void LightGrids::build(gpu::CommandRecorder& recorder, std::uint32_t index) {
         if (mayShow(light.views[v], draw.bounds)) view_mask |= 1U << v;
       if (view_mask == 0) continue;
       const std::uint32_t triangles = draw.index_count / 3;
-      commands.pushConstants(GridPush{draw.instance, triangles, index, light.record.first_view, light.record.view_count,
+      commands.pushConstants(GridPush{draw.instance, triangles, index, light.first_view, light.record.view_count,
                                       view_mask, light.record.grid_size, light.first_node, light.node_capacity,
                                       bounds_.lower, bounds_.upper, source});
       commands.dispatch(gpu::groupsOf(triangles, 64));
@@ -197,16 +205,16 @@ bool LightGrids::checkCapacity() {
 std::vector<gpu::Bound> LightGrids::bound(std::uint32_t first) const {
   const gpu::Sampler& sampler = buffers_.sampler();
   return {{first, light_table_, sampler},
-          {first + 1, view_table_, sampler},
-          {first + 2, heads_, sampler},
-          {first + 3, nodes_, sampler}};
+          {first + 1, heads_, sampler},
+          {first + 2, nodes_, sampler},
+          {first + 3, lights_buffer_}};
 }
 
 std::vector<gpu::Use> LightGrids::uses() const {
   return {{light_table_, Access::kComputeRead},
-          {view_table_, Access::kComputeRead},
           {heads_, Access::kComputeRead},
-          {nodes_, Access::kComputeRead}};
+          {nodes_, Access::kComputeRead},
+          {lights_buffer_, Access::kComputeRead}};
 }
 
 }  // namespace nephroid

@@ -14,7 +14,8 @@ namespace nephroid {
 /// Not thread-safe. Device, scene and buffers must outlive it.
 class LightGrids {
  public:
-  /// @param grid_size  cells along a side of each view; fewer are taken if the lights are many
+  /// @param grid_size  cells along a side of each view of a light that varies, half as many as of one that stays; fewer
+  ///                   are taken if the lights are many
   /// @throws ResourceError
   LightGrids(gpu::Device& device, const SceneData& scene, const SceneBuffers& buffers, std::uint32_t grid_size,
              std::uint32_t seed);
@@ -35,6 +36,8 @@ class LightGrids {
 
   /// Bindings of frame/lights.glsl, from `first` on.
   static constexpr std::uint32_t kBindings = 4;
+  /// What those passes are compiled for.
+  LightTraits traits() const { return light_views_->traits(); }
   std::vector<gpu::Bound> bound(std::uint32_t first) const;
   std::vector<gpu::Use> uses() const;
 
@@ -42,6 +45,7 @@ class LightGrids {
   struct Light {
     LightRecord record{};
     std::vector<ViewRecord> views;
+    std::uint32_t first_view = 0;  ///< of all lights' views
     std::uint32_t first_node = 0, node_capacity = 0;
     bool built = false;  ///< and still true
     bool varies = true;
@@ -65,7 +69,7 @@ class LightGrids {
   std::uint32_t grid_size_;
   gpu::ComputePipeline pipeline_;
   gpu::Image light_table_, view_table_, heads_, nodes_;
-  gpu::Buffer counters_;
+  gpu::Buffer lights_buffer_, counters_;
   std::vector<Light> lights_;
 };
 

@@ -14,6 +14,9 @@ namespace {
 /// Streams of the sampler, one for each light; those of pixels and photons of other engines do not matter here.
 constexpr std::uint32_t kFirstStream = 0x11670000U;
 
+/// Of so many lights, or fewer, shaders have code for each.
+constexpr std::uint32_t kMostFewLights = 2;
+
 bool isMirrored(const Instance& instance) { return glm::determinant(mat3(instance.world_from_object)) < 0.0F; }
 
 /// World-space corners, wound so that their normal points out of the solid.
@@ -45,6 +48,17 @@ vec3 sampleSphere(const Bounds& scene, vec3 centre, vec2 u, float& pdf_solid_ang
 
 }  // namespace
 
+std::vector<gpu::Constant> LightTraits::constants() const {
+  return {{12, count <= kMostFewLights ? count : 0}, {13, points}, {14, directionals}, {15, spots}, {16, surfaces}};
+}
+
+bool LightTraits::cover(const LightTraits& others) const {
+  const auto both = [](bool mine, bool other) { return mine || !other; };
+  const bool counted = count <= kMostFewLights || others.count <= kMostFewLights;
+  return (!counted || count == others.count) && both(points, others.points) &&
+         both(directionals, others.directionals) && both(spots, others.spots) && both(surfaces, others.surfaces);
+}
+
 LightViews::LightViews(const SceneData& scene, std::uint32_t seed)
     : scene_(scene), bounds_(scene.bounds()), seed_(seed) {
   for (std::size_t i = 0; i < scene.lights.size(); ++i) sources_.push_back({Kind::kPunctual, i});
@@ -68,13 +82,34 @@ LightViews::LightViews(const SceneData& scene, std::uint32_t seed)
   if (environment_->meanRadiance() > 0.0F) sources_.push_back({Kind::kEnvironment, 0});
 }
 
+LightTraits LightViews::traits() const {
+  LightTraits traits;
+  traits.count = static_cast<std::uint32_t>(sources_.size());
+  for (const Source& source : sources_) {
+    const Light* light = source.kind == Kind::kPunctual ? &scene_.lights[source.index] : nullptr;
+    const bool sun = light != nullptr && light->kind == LightKind::kSun;
+    const bool directional = sun || source.kind == Kind::kEnvironment;
+    traits.directionals = traits.directionals || directional;
+    traits.points = traits.points || !directional;
+    traits.spots = traits.spots || (light != nullptr && light->kind == LightKind::kSpot);
+    traits.surfaces =
+        traits.surfaces || source.kind == Kind::kMesh || (light != nullptr && !sun && light->radius > 0.0F);
+  }
+  return traits;
+}
+
+bool LightViews::isOut(std::size_t index) const {
+  const Source& source = sources_[index];
+  return source.kind == Kind::kPunctual && !(luminance(scene_.lights[source.index].intensity) > 0.0F);
+}
+
 std::optional<LightView> LightViews::make(std::size_t index, std::uint32_t sample) const {
   Sampler sampler(seed_, kFirstStream + static_cast<std::uint32_t>(index), sample);
   const Source& source = sources_[index];
   const vec2 u = sampler.next2D();
   switch (source.kind) {
     case Kind::kPunctual:
-      if (!(luminance(scene_.lights[source.index].intensity) > 0.0F)) return std::nullopt;
+      if (isOut(index)) return std::nullopt;
       return makePunctual(scene_.lights[source.index], u);
     case Kind::kMesh:
       return makeMesh(mesh_lights_[source.index], u);

@@ -11,6 +11,7 @@
 
 #include "core/sampling/distribution.h"
 #include "frame/frame.shared.h"
+#include "gpu/pipeline.h"
 #include "scene/environment_map.h"
 #include "scene/scene_data.h"
 
@@ -22,6 +23,18 @@ struct LightView {
   bool varies = false;            ///< from sample to sample: else its grid may be kept
 };
 
+/// What lights there are: shaders leave out the rest.
+struct LightTraits {
+  bool points = false, directionals = false, spots = false;
+  bool surfaces = false;  ///< points of something with a size
+  std::uint32_t count = 0;
+
+  /// Specialisation constants of frame/lights.glsl.
+  std::vector<gpu::Constant> constants() const;
+  /// Whether what was compiled for these serves for `others` too.
+  bool cover(const LightTraits& others) const;
+};
+
 class LightViews {
  public:
   /// Keeps a reference to the scene.
@@ -29,6 +42,10 @@ class LightViews {
 
   /// Sources of light: as many views has each sample, in the same order. Those of SceneData::lights come first.
   std::size_t count() const { return sources_.size(); }
+  /// Of all sources, whether or not they shine; reads the scene's lights as they are now.
+  LightTraits traits() const;
+  /// Whether a source does not shine in any sample, until the scene's lights are others.
+  bool isOut(std::size_t index) const;
   /// View `index` of sample `sample`; nothing if it does not shine. Reads the scene's lights as they are now.
   std::optional<LightView> make(std::size_t index, std::uint32_t sample) const;
 

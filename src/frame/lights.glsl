@@ -4,26 +4,43 @@
 // lists for it (light_grid.comp.glsl). No bias, no resolution, no map.
 //
 // Needs, at the bindings that the including shader gives by NEPHROID_LIGHT_BINDINGS and the three numbers after it:
-// the tables of lights and their views, the heads and the nodes of their grids.
+// the table of lights, the heads and the nodes of their grids, and the lights again as a buffer.
 #ifndef NEPHROID_LIGHTS_GLSL
 #define NEPHROID_LIGHTS_GLSL
 
 #include "frame/material.glsl"
 #include "core/optics/lights.shared.h"
+#include "frame/cube.shared.h"
 
 layout(set = 0, binding = NEPHROID_LIGHT_BINDINGS) uniform usampler2D light_table;
-layout(set = 0, binding = NEPHROID_LIGHT_BINDINGS + 1) uniform usampler2D view_table;
-layout(set = 0, binding = NEPHROID_LIGHT_BINDINGS + 2) uniform usampler2DArray grid_heads;  // a layer a light
-layout(set = 0, binding = NEPHROID_LIGHT_BINDINGS + 3) uniform usampler2D grid_nodes;
+layout(set = 0, binding = NEPHROID_LIGHT_BINDINGS + 1) uniform usampler2DArray grid_heads;  // a layer a light
+layout(set = 0, binding = NEPHROID_LIGHT_BINDINGS + 2) uniform usampler2D grid_nodes;
+// For places in the shader that ask for one light whose index is a constant: then each word is read once, and not by
+// every thread.
+layout(scalar, set = 0, binding = NEPHROID_LIGHT_BINDINGS + 3) readonly buffer Lights { LightRecord lights[]; };
+
+// How many lights there are, if they are few; else 0.
+layout(constant_id = 12) const uint kFewLights = 0u;
+// What lights the scene has: the rest is left out.
+layout(constant_id = 13) const bool kLightsHavePoints = true;       // with cubes of views
+layout(constant_id = 14) const bool kLightsHaveDirectionals = true;
+layout(constant_id = 15) const bool kLightsHaveSpots = true;
+layout(constant_id = 16) const bool kLightsHaveSurfaces = true;
 
 LightRecord fetchLight(uint i) {
-  uvec4 position = texelFetch(light_table, texelOf(5u * i), 0);
-  vec4 direction = uintBitsToFloat(texelFetch(light_table, texelOf(5u * i + 1u), 0));
-  vec4 value = uintBitsToFloat(texelFetch(light_table, texelOf(5u * i + 2u), 0));
-  uvec4 normal = texelFetch(light_table, texelOf(5u * i + 3u), 0);
-  uvec4 views = texelFetch(light_table, texelOf(5u * i + 4u), 0);
+  uvec4 zero = uvec4(0u), normal = zero;
+  uvec4 position = texelFetch(light_table, texelOf(7u * i), 0);
+  vec4 direction = uintBitsToFloat(texelFetch(light_table, texelOf(7u * i + 1u), 0));
+  vec4 value = uintBitsToFloat(texelFetch(light_table, texelOf(7u * i + 2u), 0));
+  if (kLightsHaveSurfaces) normal = texelFetch(light_table, texelOf(7u * i + 3u), 0);
+  uvec4 grid = texelFetch(light_table, texelOf(7u * i + 4u), 0), row_x = zero, row_y = zero;
+  if (kLightsHaveDirectionals) {
+    row_x = texelFetch(light_table, texelOf(7u * i + 5u), 0);
+    row_y = texelFetch(light_table, texelOf(7u * i + 6u), 0);
+  }
   return LightRecord(uintBitsToFloat(position.xyz), position.w, direction.xyz, direction.w, value.xyz, value.w,
-                     uintBitsToFloat(normal.xyz), normal.w, views.x, views.y, views.z, views.w);
+                     uintBitsToFloat(normal.xyz), normal.w, grid.x, grid.y, grid.z, grid.w, uintBitsToFloat(row_x),
+                     uintBitsToFloat(row_y));
 }
 
 struct Arriving {
@@ -34,7 +51,7 @@ struct Arriving {
 
 Arriving arriveFrom(LightRecord light, vec3 position) {
   Arriving a;
-  if (light.kind == kLightDirectional) {
+  if (!kLightsHavePoints || (kLightsHaveDirectionals && light.kind == kLightDirectional)) {
     a.dir = -light.direction;
     a.distance = kFarAway;
     a.irradiance = light.value;
@@ -46,10 +63,13 @@ Arriving arriveFrom(LightRecord light, vec3 position) {
   a.distance = squared * inverse;
   a.dir = to_light * inverse;
   vec3 intensity = light.value;
-  if (light.kind == kLightSpot) intensity *= spotFalloff(-dot(a.dir, light.direction), light.cos_inner, light.cos_outer);
-  float cos_surface = -dot(a.dir, light.normal);
-  if (light.surface == kSurfaceFront) intensity *= max(cos_surface, 0.0);
-  if (light.surface == kSurfaceBoth) intensity *= abs(cos_surface);
+  if (kLightsHaveSpots && light.kind == kLightSpot)
+    intensity *= spotFalloff(-dot(a.dir, light.direction), light.cos_inner, light.cos_outer);
+  if (kLightsHaveSurfaces) {
+    float cos_surface = -dot(a.dir, light.normal);
+    if (light.surface == kSurfaceFront) intensity *= max(cos_surface, 0.0);
+    if (light.surface == kSurfaceBoth) intensity *= abs(cos_surface);
+  }
   a.irradiance = intensity * (inverse * inverse);
   return a;
 }
@@ -97,37 +117,34 @@ bool hasEdges(GridNode node, RayTriangle hit) {
 /// @param heads  of the lists to walk through
 Shadow walkLists(uvec2 heads, Place place, Arriving light) {
   Shadow shadow = Shadow(uvec3(0u), false);
-  uint next = heads.x;
-  bool second = false;
-  while (!shadow.blocked) {
-    if (next == kNowhere && !second) {
-      second = true;
-      next = heads.y;
-    }
-    if (next == kNowhere) break;
+  bool second = heads.x == kNowhere;
+  uint next = second ? heads.y : heads.x;
+  // Whether there is more is asked at the end: a device that runs all branches runs a loop's body once more to find that
+  // it is done. So both lists may be empty at the beginning, and then the first node there is is read in vain.
+  bool is_node = next != kNowhere;
+  next = is_node ? next : 0u;
+  do {
     uvec4 a = texelFetch(grid_nodes, texelOf(3u * next), 0);
     uvec4 b = texelFetch(grid_nodes, texelOf(3u * next + 1u), 0);
     uvec4 c = texelFetch(grid_nodes, texelOf(3u * next + 2u), 0);
-    next = a.w;
     GridNode node =
         GridNode(uintBitsToFloat(a.xyz), a.w, uintBitsToFloat(b.xyz), b.w, uintBitsToFloat(c.xyz), c.w);
     bool own = (node.instance & ~kNodePassable) == place.instance && node.triangle == place.triangle;
     RayTriangle hit = intersectPlaneOf(Triangle(node.a, node.b, node.c), place.start, light.dir);
-    if (own || !isInside(hit) || hit.t <= 0.0 || hit.t >= light.distance * (1.0 - 1e-5) * hit.size) continue;
-    if (kSceneHasPassable && (node.instance & kNodePassable) != 0u) {
-      if (hasEdges(node, hit)) shadow = passThrough(shadow, node, hit.u / hit.size, hit.v / hit.size, light.dir);
-    } else {
-      shadow.blocked = true;
+    if (is_node && !own && isInside(hit) && hit.t > 0.0 && hit.t < light.distance * (1.0 - 1e-5) * hit.size) {
+      if (kSceneHasPassable && (node.instance & kNodePassable) != 0u) {
+        if (hasEdges(node, hit)) shadow = passThrough(shadow, node, hit.u / hit.size, hit.v / hit.size, light.dir);
+      } else {
+        shadow.blocked = true;
+      }
     }
-  }
+    next = is_node ? node.next : kNowhere;
+    if (next == kNowhere && !second) {
+      second = true;
+      next = heads.y;
+    }
+  } while (next != kNowhere && !shadow.blocked);
   return shadow;
-}
-
-uint chooseFace(vec3 v) {
-  vec3 a = abs(v);
-  if (a.x >= a.y && a.x >= a.z) return v.x >= 0.0 ? 0u : 1u;
-  if (a.y >= a.z) return v.y >= 0.0 ? 2u : 3u;
-  return v.z >= 0.0 ? 4u : 5u;
 }
 
 ivec3 headOf(uint list, uint light) {
@@ -136,15 +153,18 @@ ivec3 headOf(uint list, uint light) {
 
 /// Share of the light that reaches a point.
 vec3 visibilityOf(uint light_index, LightRecord light, Place place, Arriving arriving, vec3 position) {
-  uint face = light.view_count == 6u ? chooseFace(position - light.position) : 0u;
-  uint view = 8u * (light.first_view + face);
-  vec4 p = vec4(position, 1.0);
-  float x = dot(uintBitsToFloat(texelFetch(view_table, texelOf(view), 0)), p);
-  float y = dot(uintBitsToFloat(texelFetch(view_table, texelOf(view + 1u), 0)), p);
-  float w = dot(uintBitsToFloat(texelFetch(view_table, texelOf(view + 3u), 0)), p);
-  if (w <= 0.0) return vec3(1.0);
   float size = float(light.grid_size);
-  vec2 on_grid = vec2(x, y) * (0.5 * size / w) + 0.5 * size;
+  uint face = 0u;
+  vec2 on_grid;
+  if (!kLightsHavePoints || (kLightsHaveDirectionals && light.kind == kLightDirectional)) {
+    vec4 p = vec4(position, 1.0);
+    on_grid = vec2(dot(light.grid_row_x, p), dot(light.grid_row_y, p));
+  } else {
+    CubePlace on_cube = placeOnCube(position - light.position);
+    if (on_cube.depth <= 0.0) return vec3(1.0);
+    face = on_cube.face;
+    on_grid = vec2(on_cube.x, on_cube.y) * (0.5 * size / on_cube.depth) + 0.5 * size;
+  }
   uvec2 cell = uvec2(clamp(floor(on_grid), vec2(0.0), vec2(size - 1.0)));
   uint coarse_size = light.grid_size / kCoarseCell;
   uvec2 coarse = cell / kCoarseCell;
@@ -161,8 +181,7 @@ vec3 visibilityOf(uint light_index, LightRecord light, Place place, Arriving arr
 /// Radiance towards the eye of what comes straight from one light, W/m²/sr.
 /// @param s   its shading normal perturbed; both normals on the side of the eye
 /// @param wo  unit, to the eye
-vec3 lightFrom(uint light_index, Surface s, MaterialPoint m, vec3 wo, float specular_alpha) {
-  LightRecord light = fetchLight(light_index);
+vec3 lightFrom(uint light_index, LightRecord light, Surface s, MaterialPoint m, vec3 wo, float specular_alpha) {
   if (light.view_count == 0u) return vec3(0.0);
   Arriving arriving = arriveFrom(light, s.position);
   float cos_light = dot(arriving.dir, s.shading);
@@ -180,6 +199,21 @@ vec3 lightFrom(uint light_index, Surface s, MaterialPoint m, vec3 wo, float spec
   }
   Place place = Place(s.position + s.position_error * s.geometric, s.instance_index, s.triangle);
   return brdf * arriving.irradiance * cos_light * visibilityOf(light_index, light, place, arriving, s.position);
+}
+
+vec3 lightFrom(uint light_index, Surface s, MaterialPoint m, vec3 wo, float specular_alpha) {
+  return lightFrom(light_index, fetchLight(light_index), s, m, wo, specular_alpha);
+}
+
+/// The sum over all lights, which are `light_count`.
+vec3 lightFromAll(uint light_count, Surface s, MaterialPoint m, vec3 wo, float specular_alpha) {
+  vec3 sum = vec3(0.0);
+  if (kFewLights > 0u) {
+    [[unroll]] for (uint i = 0u; i < kFewLights; ++i) sum += lightFrom(i, lights[i], s, m, wo, specular_alpha);
+  } else {
+    for (uint i = 0u; i < light_count; ++i) sum += lightFrom(i, s, m, wo, specular_alpha);
+  }
+  return sum;
 }
 
 #endif

@@ -14,7 +14,7 @@ layout(set = 0, binding = NEPHROID_PIXEL_BINDINGS + 2) uniform usampler2D pixel_
 layout(set = 0, binding = NEPHROID_PIXEL_BINDINGS + 3) uniform sampler2D pixel_depth;
 layout(set = 0, binding = NEPHROID_PIXEL_BINDINGS + 4) uniform sampler2D pixel_normal;
 
-layout(constant_id = 12) const bool kPixelsAreForeign = false;
+layout(constant_id = 17) const bool kPixelsAreForeign = false;
 
 /// A surface in a pixel; both normals on the side that is seen.
 struct PixelSurface {

@@ -3,13 +3,11 @@
 #include <cmath>
 #include <limits>
 
+#include "frame/passes.h"
 #include "nephroid/error.h"
 
 namespace nephroid {
 namespace {
-
-using gpu::Access;
-using gpu::Bound;
 
 /// Steps of the depths of a format: between neighbours everywhere, and relative to the depth.
 struct DepthSteps {
@@ -68,8 +66,6 @@ PixelSurfaces PixelSurfaces::ofForeign(const gpu::Buffer& view, const gpu::Image
 }
 
 std::vector<VkDescriptorType> PixelSurfaces::descriptorTypes() {
-  constexpr VkDescriptorType kTable = VK_DESCRIPTOR_TYPE_STORAGE_BUFFER;
-  constexpr VkDescriptorType kTexture = VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER;
   return {kTable, kTable, kTexture, kTexture, kTexture};
 }
 

@@ -45,7 +45,7 @@ class PixelSurfaces {
   void appendUses(std::vector<gpu::Use>& uses) const;
   /// A pass is compiled for one kind.
   bool isForeign() const { return foreign_; }
-  static gpu::Constant constant(bool foreign) { return {12, foreign}; }
+  static gpu::Constant constant(bool foreign) { return {17, foreign}; }
 
  private:
   PixelSurfaces(const gpu::Buffer& view, const gpu::Image& seen, const gpu::Image& depth, const gpu::Image& normal,

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "frame/passes.h"
 #include "frame/raster.shared.h"
 #include "frame/view.h"
 #include "shaders/frame/raster_parts.comp.h"
@@ -12,11 +13,6 @@
 
 namespace nephroid {
 namespace {
-
-using gpu::Access;
-using gpu::Bound;
-using gpu::PassCommands;
-using gpu::Use;
 
 static_assert(sizeof(RasterPush) == 104);
 static_assert(sizeof(RasterPart) == 16);
@@ -37,8 +33,6 @@ constexpr float kPixelsPerTriangle = 10.0F;
 constexpr std::uint32_t kFewOfDraw = 256;
 /// and with fewer in all the passes themselves: they take 2 to 3 ms of a picture of 640 by 480.
 constexpr std::uint32_t kFewInAll = 24576;
-
-constexpr VkDescriptorType kTable = VK_DESCRIPTOR_TYPE_STORAGE_BUFFER;
 
 gpu::ComputePipeline makePass(gpu::Device& device, gpu::Spirv shader, const char* name,
                               std::vector<gpu::Constant> constants = {}) {

@@ -16,7 +16,7 @@ static_assert(sizeof(InstanceRecord) == 80);
 static_assert(sizeof(MaterialRecord) == 144);
 static_assert(sizeof(TextureRecord) == 48);
 static_assert(sizeof(ViewRecord) == 128);
-static_assert(sizeof(LightRecord) == 80);
+static_assert(sizeof(LightRecord) == 112);
 static_assert(sizeof(LampRecord) == 64);
 static_assert(sizeof(GridNode) == 48);
 

@@ -2,9 +2,11 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_scalar_block_layout : require
+#extension GL_EXT_control_flow_attributes : require
 #define NEPHROID_LIGHT_BINDINGS 7
 #include "frame/lights.glsl"
 #include "frame/passable.glsl"
+#include "frame/sample_push.shared.h"
 
 layout(local_size_x = 8, local_size_y = 8) in;
 layout(scalar, set = 0, binding = 11) readonly buffer Views { ViewRecord views[]; };
@@ -13,16 +15,7 @@ layout(set = 0, binding = 13) uniform sampler2D tint_image;  // of what lies bef
 layout(set = 0, binding = 16, rgba32f) uniform image2D direct_image;    // sum over samples, W/m²/sr
 layout(set = 0, binding = 17, rgba32f) uniform image2D emission_image;  // likewise
 
-layout(push_constant, scalar) uniform Push {
-  vec2 film_offset;  // of the sample in the pixel, in [0, 1)
-  uint frame;
-  uint light_count;
-  uint lamp_count;
-  float specular_alpha;
-  float environment_scale;
-  float cos_rotation;
-  float sin_rotation;
-};
+layout(push_constant, scalar) uniform Push { SamplePush push; };
 
 #define NEPHROID_SKY_BINDINGS 14
 #include "frame/sky.glsl"
@@ -37,7 +30,7 @@ Shaded shade(Ray ray, uvec2 seen, uvec2 pixel) {
   Surface s = surfaceSeen(ray, seen.x - 1u, seen.y);
   MaterialPoint m = materialAt(s.instance, s.triangle, s.u, s.v);
   if (kSceneHasTextures) s.shading = perturbedNormal(s);
-  float weight = kSceneHasPassable ? passageAt(s, m, ray.dir, pixel, frame).weight : 1.0;
+  float weight = kSceneHasPassable ? passageAt(s, m, ray.dir, pixel, push.frame).weight : 1.0;
   Shaded result = Shaded(vec3(0.0), vec3(0.0), dot(s.position - ray.origin, ray.dir));
   bool front = dot(ray.dir, s.geometric) < 0.0;
   if (kSceneEmits && (front || m.double_sided)) result.emission = weight * m.emission;
@@ -47,9 +40,9 @@ Shaded shade(Ray ray, uvec2 seen, uvec2 pixel) {
   }
   // Near a silhouette the interpolated normal may look away from the eye: the true one cannot.
   if (dot(s.shading, -ray.dir) <= 1e-4) s.shading = s.geometric;
-  bool has_interface = m.optics.alpha >= specular_alpha && (kSceneHasMetal || kSceneHasGloss);
+  bool has_interface = m.optics.alpha >= push.specular_alpha && (kSceneHasMetal || kSceneHasGloss);
   if (m.base_weight <= 0.0 && !has_interface) return result;
-  for (uint i = 0u; i < light_count; ++i) result.direct += weight * lightFrom(i, s, m, -ray.dir, specular_alpha);
+  result.direct = weight * lightFromAll(push.light_count, s, m, -ray.dir, push.specular_alpha);
   return result;
 }
 
@@ -57,7 +50,7 @@ void main() {
   ivec2 pixel = ivec2(gl_GlobalInvocationID.xy);
   ivec2 size = imageSize(direct_image);
   if (pixel.x >= size.x || pixel.y >= size.y) return;
-  Ray ray = rayThrough(views[0], (vec2(pixel) + film_offset) / vec2(size) * 2.0 - 1.0);
+  Ray ray = rayThrough(views[0], (vec2(pixel) + push.film_offset) / vec2(size) * 2.0 - 1.0);
   uvec2 seen = texelFetch(seen_image, pixel, 0).xy;
   Shaded shaded = Shaded(vec3(0.0), vec3(0.0), kFarAway);
   if (seen.x != 0u) {

@@ -1,7 +1,7 @@
 // What shines without being a surface, as it is seen: the environment, spheres, suns.
 //
 // The including shader gives the two bindings from NEPHROID_SKY_BINDINGS on, and declares before, among what is pushed
-// to it: lamp_count, environment_scale, cos_rotation, sin_rotation.
+// to it: SamplePush push.
 #ifndef NEPHROID_SKY_GLSL
 #define NEPHROID_SKY_GLSL
 
@@ -18,11 +18,11 @@ layout(constant_id = 7) const bool kSceneEmits = true;     // any of its materia
 const float kPi = 3.14159265358979;
 
 vec3 environmentFrom(vec3 dir) {
-  float x = dir.x * cos_rotation - dir.z * sin_rotation;
-  float z = dir.x * sin_rotation + dir.z * cos_rotation;
+  float x = dir.x * push.cos_rotation - dir.z * push.sin_rotation;
+  float z = dir.x * push.sin_rotation + dir.z * push.cos_rotation;
   float u = x == 0.0 && z == 0.0 ? 0.5 : 0.5 + atan(x, -z) * (0.5 / kPi);
   float v = acos(clamp(dir.y, -1.0, 1.0)) / kPi;
-  return environment_scale * textureLod(environment, vec2(u, v), 0.0).xyz;
+  return push.environment_scale * textureLod(environment, vec2(u, v), 0.0).xyz;
 }
 
 LampRecord fetchLamp(uint i) {
@@ -49,7 +49,7 @@ vec3 sphereSeen(LampRecord lamp, Ray ray, float t_max) {
 /// @param t_max  kFarAway where the ray meets nothing
 vec3 lampsSeen(Ray ray, float t_max) {
   vec3 sum = vec3(0.0);
-  for (uint i = 0u; i < lamp_count; ++i) {
+  for (uint i = 0u; i < push.lamp_count; ++i) {
     LampRecord lamp = fetchLamp(i);
     if (lamp.radius > 0.0) {
       sum += sphereSeen(lamp, ray, t_max);

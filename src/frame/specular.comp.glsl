@@ -6,6 +6,7 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_scalar_block_layout : require
+#extension GL_EXT_control_flow_attributes : require
 #define NEPHROID_LIGHT_BINDINGS 7
 #include "frame/lights.glsl"
 #include "frame/passable.glsl"
@@ -81,7 +82,7 @@ float iorOf(Medium medium, float wavelength_nm) {
 /// Each pixel goes through all bands in as many frames, in an order that spreads them.
 void drawWavelength(inout Path path, uvec2 pixel) {
   uint first = hashChain(pixel.x + (pixel.y << 16), 0x57u);
-  vec4 band = texelFetch(band_table, texelOf((first + frame * 39u) % band_count), 0);
+  vec4 band = texelFetch(band_table, texelOf((first + push.frame * 39u) % band_count), 0);
   path.wavelength_nm = band.x;
   path.throughput *= band.yzw;
 }
@@ -116,7 +117,7 @@ void goOn(inout Path path, Surface s, vec3 dir) {
 vec3 lobeLight(Surface s, SurfaceOptics optics, vec3 wo) {
   Axes axes = axesAbout(s.shading);
   vec3 sum = vec3(0.0);
-  for (uint i = 0u; i < light_count; ++i) {
+  for (uint i = 0u; i < push.light_count; ++i) {
     LightRecord light = fetchLight(i);
     if (light.view_count == 0u || light.has_size != 0u) continue;
     Arriving arriving = arriveFrom(light, s.position);
@@ -188,7 +189,7 @@ Receiver meet(inout Path path, Met met, uvec2 pixel) {
   if (kSceneEmits && path.events > 0u && (entering || m.double_sided)) path.radiance += path.throughput * m.emission;
 
   s = turnTowards(s, path.ray.dir);
-  bool hole = m.coverage < 1.0 && chanceOf(pixel, path.events == 0u ? frame : path.seed, s, 0u) >= m.coverage;
+  bool hole = m.coverage < 1.0 && chanceOf(pixel, path.events == 0u ? push.frame : path.seed, s, 0u) >= m.coverage;
   bool hidden = is_solid && !boundary.is_event && !hole;
   bool crosses = is_solid && hidden;
   vec3 dir = path.ray.dir;
@@ -199,7 +200,7 @@ Receiver meet(inout Path path, Met met, uvec2 pixel) {
     if (disperses) drawWavelength(path, pixel);
     m.optics.ior_from = iorOf(from, path.wavelength_nm);
     if (is_solid) m.optics.ior_to = iorOf(to, path.wavelength_nm);
-    bool is_specular = m.optics.alpha < specular_alpha;
+    bool is_specular = m.optics.alpha < push.specular_alpha;
     vec2 u = kSceneHasRoughSpecular ? vec2(draw(path), draw(path)) : vec2(0.0);
     Scattered scattered = kSceneHasRoughSpecular && m.optics.alpha > 0.0
                               ? scatterRough(m.optics, dir, s.shading, u)
@@ -240,7 +241,7 @@ Receiver meet(inout Path path, Met met, uvec2 pixel) {
 }
 
 Path startPath(Ray ray, uvec2 pixel, uint branch) {
-  uint seed = hashChain(hashChain(hashChain(0u, pixel.x + (pixel.y << 16)), frame), branch);
+  uint seed = hashChain(hashChain(hashChain(0u, pixel.x + (pixel.y << 16)), push.frame), branch);
   return Path(ray, vec3(1.0), vec3(0.0), branch, false, false, 0u, seed, 0.0, kNowhere, 0u, kInTheOpen);
 }
 
@@ -259,7 +260,7 @@ vec3 litRadiance(Receiver receiver) {
   MaterialPoint m = materialAt(s.instance, s.triangle, s.u, s.v);
   m.optics.ior_from = receiver.ior_from;
   vec3 sum = vec3(0.0);
-  for (uint i = 0u; i < light_count; ++i) sum += lightFrom(i, s, m, -receiver.dir, specular_alpha);
+  for (uint i = 0u; i < push.light_count; ++i) sum += lightFrom(i, s, m, -receiver.dir, push.specular_alpha);
   return sum * receiver.weight;
 }
 
@@ -292,7 +293,7 @@ vec3 followChain(Ray ray, uvec2 pixel, uint branch) {
 void showPixel(uint listed) {
   uvec2 pixel = uvec2(listed & 0xFFFFu, listed >> 16);
   vec2 size = vec2(imageSize(specular_image));
-  Ray ray = rayThrough(views[0], (vec2(pixel) + film_offset) / size * 2.0 - 1.0);
+  Ray ray = rayThrough(views[0], (vec2(pixel) + push.film_offset) / size * 2.0 - 1.0);
   vec3 sum = vec3(0.0);
   for (uint branch = 0u; branch < (kSceneTransmits ? 2u : 1u); ++branch) sum += followChain(ray, pixel, branch);
   ivec2 place = ivec2(pixel);

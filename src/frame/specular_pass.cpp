@@ -3,22 +3,13 @@
 #include <algorithm>
 
 #include "core/spectrum.h"
+#include "frame/passes.h"
 #include "frame/table.h"
 #include "shaders/frame/specular.comp.h"
 #include "shaders/frame/specular_pixels.comp.h"
 
 namespace nephroid {
 namespace {
-
-using gpu::Access;
-using gpu::Bound;
-using gpu::PassCommands;
-using gpu::Use;
-
-constexpr VkDescriptorType kTable = VK_DESCRIPTOR_TYPE_STORAGE_BUFFER;
-constexpr VkDescriptorType kTexture = VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER;
-constexpr VkDescriptorType kStorage = VK_DESCRIPTOR_TYPE_STORAGE_IMAGE;
-constexpr VkFormat kFloat4 = VK_FORMAT_R32G32B32A32_SFLOAT;
 
 /// Wavelengths that a dispersive path may have: so many that their discs of colour run into one another.
 constexpr int kBandCount = 64;
@@ -27,9 +18,7 @@ constexpr std::uint32_t kMaxGroups = 2048;
 
 /// Pushed by frame/specular_push.glsl.
 struct SpecularPush {
-  vec2 film_offset;
-  std::uint32_t frame, light_count, lamp_count;
-  float specular_alpha, environment_scale, cos_rotation, sin_rotation;
+  SamplePush sample;
   std::uint32_t max_events, tree_nodes, tree_orders, band_count;
 };
 
@@ -41,23 +30,21 @@ gpu::Image makeBandTable(gpu::Device& device, gpu::CommandRecorder& recorder) {
   return makeTexelTable(device, recorder, kFloat4, std::as_bytes(std::span(texels)), "bands");
 }
 
-std::vector<gpu::Constant> constantsOf(const SceneTraits& traits, const std::vector<gpu::Constant>& sky) {
+std::vector<gpu::Constant> constantsOf(const SceneTraits& traits, const std::vector<gpu::Constant>& lights) {
   const SpecularTraits& s = traits.specular;
   std::vector<gpu::Constant> constants{{0, s.metal},         {1, true},    {2, traits.conductors}, {3, traits.textures},
                                        {4, traits.passable}, {8, s.rough}, {9, s.transmits},       {10, s.media},
                                        {11, s.disperses}};
-  constants.insert(constants.end(), sky.begin(), sky.end());
+  constants.insert(constants.end(), lights.begin(), lights.end());
   return constants;
 }
 
 }  // namespace
 
 SpecularPass::SpecularPass(gpu::Device& device, gpu::CommandRecorder& recorder, const SceneBuffers& buffers,
-                           const Inputs& inputs, const std::vector<gpu::Constant>& sky, float specular_alpha,
-                           std::uint32_t max_events)
+                           const Inputs& inputs, const std::vector<gpu::Constant>& lights, std::uint32_t max_events)
     : buffers_(buffers),
       inputs_(inputs),
-      specular_alpha_(specular_alpha),
       max_events_(max_events),
       list_(device,
             {.shader = shaders::specular_pixels_comp,
@@ -66,10 +53,10 @@ SpecularPass::SpecularPass(gpu::Device& device, gpu::CommandRecorder& recorder, 
             "list of specular pixels"),
       follow_(device,
               {.shader = shaders::specular_comp,
-               .bindings = SceneBuffers::bindings({kTexture, kTexture, kTexture, kTexture, kTable, kTexture, kTexture,
+               .bindings = SceneBuffers::bindings({kTexture, kTexture, kTexture, kTable, kTable, kTexture, kTexture,
                                                    kTexture, kTexture, kTable, kStorage, kTexture, kTexture}),
                .push_bytes = sizeof(SpecularPush),
-               .constants = constantsOf(buffers.traits(), sky)},
+               .constants = constantsOf(buffers.traits(), lights)},
               "specular"),
       bands_(makeBandTable(device, recorder)) {
   const gpu::ImageDesc& seen = inputs.seen.desc();
@@ -99,20 +86,10 @@ void SpecularPass::recordList(gpu::CommandRecorder& recorder) {
   });
 }
 
-void SpecularPass::record(gpu::CommandRecorder& recorder, const SpecularSample& sample) {
+void SpecularPass::record(gpu::CommandRecorder& recorder, const SamplePush& sample) {
   recordList(recorder);
   const LightGrids& grids = inputs_.grids;
-  const SpecularPush push{sample.film_offset,
-                          sample.frame,
-                          grids.lightCount(),
-                          sample.lamp_count,
-                          specular_alpha_,
-                          sample.environment_scale,
-                          sample.cos_rotation,
-                          sample.sin_rotation,
-                          max_events_,
-                          inputs_.tree.nodeCount(),
-                          inputs_.tree.orderCount(),
+  const SpecularPush push{sample, max_events_, inputs_.tree.nodeCount(), inputs_.tree.orderCount(),
                           static_cast<std::uint32_t>(kBandCount)};
   std::vector<Use> uses = buffers_.uses(
       Access::kComputeRead, {Use(inputs_.camera_view, Access::kComputeRead), Use(inputs_.seen, Access::kComputeRead),

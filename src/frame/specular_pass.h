@@ -8,18 +8,12 @@
 #include <vector>
 
 #include "frame/light_grids.h"
+#include "frame/sample_push.shared.h"
 #include "frame/scene_buffers.h"
 #include "frame/triangle_tree.h"
 #include "gpu/commands.h"
 
 namespace nephroid {
-
-/// What a sample of the frame is made with, where it bears on what is seen in mirrors and through glass.
-struct SpecularSample {
-  vec2 film_offset;  ///< of the sample in the pixel, in [0, 1)
-  std::uint32_t frame, lamp_count;
-  float environment_scale, cos_rotation, sin_rotation;
-};
 
 /// Not thread-safe. What it is made from must outlive it.
 class SpecularPass {
@@ -33,13 +27,13 @@ class SpecularPass {
     const TriangleTree& tree;
   };
 
-  /// Records the upload of tables. @param sky  constants of frame/sky.glsl: what may be seen that is no receiver
+  /// Records the upload of tables. @param lights  constants of frame/sky.glsl and frame/lights.glsl: what shines
   /// @throws ResourceError
   SpecularPass(gpu::Device& device, gpu::CommandRecorder& recorder, const SceneBuffers& buffers, const Inputs& inputs,
-               const std::vector<gpu::Constant>& sky, float specular_alpha, std::uint32_t max_events);
+               const std::vector<gpu::Constant>& lights, std::uint32_t max_events);
 
   /// Adds a sample to the sum, once the frame's visibility is drawn.
-  void record(gpu::CommandRecorder& recorder, const SpecularSample& sample);
+  void record(gpu::CommandRecorder& recorder, const SamplePush& sample);
   /// Sum over samples, W/m²/sr.
   const gpu::Image& sum() const { return sum_; }
 
@@ -48,7 +42,6 @@ class SpecularPass {
 
   const SceneBuffers& buffers_;
   Inputs inputs_;
-  float specular_alpha_;
   std::uint32_t max_events_;
   gpu::ComputePipeline list_, follow_;
   gpu::Image bands_, sum_;

@@ -66,6 +66,67 @@ TEST_F(ChangesTest, LightsMayGoOutAndBecomeLamps) {
   EXPECT_GT(*std::max_element(emission.pixels.begin(), emission.pixels.end()), 0.0F);
 }
 
+TEST_F(ChangesTest, LightsThatStayOrAreOutCostNothing) {
+  SceneData scene = makeBalls();
+  scene.lights[0].intensity = vec3(0);
+  RealtimeFrame frame(device(), scene, lookAtBall(), kSmall);
+  frame.render(0);
+  EXPECT_EQ(countPasses(frame, "light grid"), 1);
+  frame.render(1);
+  EXPECT_EQ(countPasses(frame, "light grid"), 0);
+  EXPECT_EQ(countPasses(frame, "upload"), 1) << "more than the camera";
+  scene.lights[0].intensity = vec3(60);
+  frame.lightChanged(0);
+  frame.render(0);
+  EXPECT_EQ(frame.readSummed("direct").pixels, renderAnew(scene, lookAtBall(), kSmall).pixels);
+}
+
+TEST_F(ChangesTest, LightsBecomeOthersThanThePassesWereCompiledFor) {
+  SceneData scene = makeBalls();
+  scene.lights.erase(scene.lights.begin());
+  RealtimeFrame frame(device(), scene, lookAtBall(), kSmall);
+  frame.render(0);
+  const auto expectAsAnew = [&](const char* kind) {
+    frame.lightChanged(0);
+    frame.render(0);
+    EXPECT_EQ(frame.readSummed("direct").pixels, renderAnew(scene, lookAtBall(), kSmall).pixels) << kind;
+  };
+  Light light = test::makePoint(vec3(2, 4, 1), vec3(60));
+  scene.lights[0] = light;
+  expectAsAnew("point");
+  light.kind = LightKind::kSpot;
+  light.direction = normalize(vec3(-2, -3.5F, -1));
+  light.inner_cone = 0.1F, light.outer_cone = 0.3F;
+  scene.lights[0] = light;
+  expectAsAnew("spot");
+  light.radius = 0.4F;
+  scene.lights[0] = light;
+  expectAsAnew("spot with a size");
+  scene.lights[0] = test::makeSun(vec3(1, -2, 0.5F), vec3(3));
+  expectAsAnew("sun");
+}
+
+TEST_F(ChangesTest, ManyLightsAreTheSumOfEachAlone) {
+  // Few have code of their own each, many a common loop.
+  SceneData scene = makeBalls();
+  const auto light = test::makePoint(vec3(-1, 3, 2), vec3(30));
+  Image sum(kSmall.width, kSmall.height, 3);
+  std::vector<Light> all = scene.lights;
+  for (int i = 0; i < 3; ++i) {
+    all.push_back(light);
+    all.back().position.x += static_cast<float>(i);
+  }
+  for (const Light& one : all) {
+    scene.lights = {one};
+    const Image alone = renderAnew(scene, lookAtBall(), kSmall);
+    for (std::size_t i = 0; i < sum.pixels.size(); ++i) sum.pixels[i] += alone.pixels[i];
+  }
+  scene.lights = all;
+  const Image together = renderAnew(scene, lookAtBall(), kSmall);
+  for (std::size_t i = 0; i < sum.pixels.size(); ++i)
+    ASSERT_NEAR(together.pixels[i], sum.pixels[i], 1e-5F * sum.pixels[i]);
+}
+
 TEST_F(ChangesTest, MovedObjectsStandAndShadeWhereTheyAre) {
   SceneData scene = makeBalls();
   RealtimeFrame frame(device(), scene, lookAtBall(), kSmall);

@@ -13,7 +13,7 @@ namespace {
 
 constexpr std::uint32_t kSamples = 4096;
 
-/// As direct.comp.glsl has it.
+/// As lights.glsl has it.
 dvec3 irradianceOf(const LightRecord& light, vec3 place, vec3 normal) {
   if (light.kind == kLightDirectional)
     return dvec3(light.value) * static_cast<double>(std::max(-dot(light.direction, normal), 0.0F));

@@ -2,6 +2,9 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
+
+#include "frame/cube.shared.h"
 #include "trace/camera_model.h"
 
 namespace nephroid {
@@ -55,6 +58,24 @@ TEST(View, MovesThePlaceOfASampleToThePixelsCentre) {
   const vec2 seen = toPixels(view, ray.origin + 2.0F * ray.dir, 64, 48);
   EXPECT_NEAR(seen.x, 20.5F, 1e-3F);
   EXPECT_NEAR(seen.y, 30.5F, 1e-3F);
+}
+
+TEST(View, ACubeShowsEveryDirectionOnceAndWhereShadersLook) {
+  const vec3 eye(0.3F, -0.2F, 0.1F);
+  for (int k = 0; k < 1000; ++k) {
+    // Spread over all directions; lengths differ.
+    const float height = 1.0F - (2.0F * static_cast<float>(k) + 1.0F) / 1000.0F,
+                turn = 2.39996F * static_cast<float>(k);
+    const float beside = std::sqrt(1.0F - height * height), far = 0.5F + 0.01F * static_cast<float>(k % 7);
+    const vec3 v = far * vec3(beside * std::cos(turn), height, beside * std::sin(turn));
+    const CubePlace place = placeOnCube(v);
+    ASSERT_LT(place.face, 6U);
+    const vec4 clip = toClip(makeCubeView(eye, static_cast<int>(place.face), makeBounds()), eye + v);
+    EXPECT_NEAR(place.x, clip.x, 1e-6F) << "face " << place.face;
+    EXPECT_NEAR(place.y, clip.y, 1e-6F) << "face " << place.face;
+    EXPECT_NEAR(place.depth, clip.w, 1e-6F) << "face " << place.face;
+    EXPECT_LE(std::max(std::abs(place.x), std::abs(place.y)), place.depth);
+  }
 }
 
 TEST(View, KeepsAllBoundsBetweenItsEnds) {

@@ -1,0 +1,20 @@
+// The words that the frame's passes are written with.
+#pragma once
+
+#include "gpu/commands.h"
+
+namespace nephroid {
+
+using gpu::Access;
+using gpu::Bound;
+using gpu::PassCommands;
+using gpu::Use;
+
+inline constexpr VkDescriptorType kTable = VK_DESCRIPTOR_TYPE_STORAGE_BUFFER;
+inline constexpr VkDescriptorType kTexture = VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER;
+inline constexpr VkDescriptorType kStorage = VK_DESCRIPTOR_TYPE_STORAGE_IMAGE;
+
+/// Of sums and of what is read back.
+inline constexpr VkFormat kFloat4 = VK_FORMAT_R32G32B32A32_SFLOAT;
+
+}  // namespace nephroid
