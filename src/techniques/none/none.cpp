@@ -18,6 +18,7 @@
 #include "nephroid/error.h"
 #include "techniques/layers.h"
 #include "techniques/settings.h"
+#include "trace/box_tree_builder.h"
 
 namespace nephroid {
 namespace {
@@ -122,6 +123,7 @@ FrameSettings makeFrameSettings(const RenderSettings& settings) {
           .specular_alpha = settings.params.getFloat("specular-alpha"),
           .specular = std::ranges::any_of(settings.layers,
                                           [](const std::string& l) { return l == "beauty" || l == "specular"; }),
+          .box_tree_builder = buildBoxTree,
           .max_events = static_cast<std::uint32_t>(settings.params.getInt("max-events")),
           .seed = foldSeed(settings.seed)};
 }
@@ -267,7 +269,7 @@ RenderResult renderNone(const SceneData& scene, const Camera& camera, const Rend
     open.keepPipelines();
     result = render.run();
   }
-  for (std::string& limit : describeFrameLimits(scene, settings.params.getFloat("specular-alpha")))
+  for (std::string& limit : describeFrameLimits(scene, makeFrameSettings(settings)))
     result.notes.push_back(std::move(limit));
   open.checkValidation();
   return result;
