@@ -117,7 +117,7 @@ RealtimeFrame::RealtimeFrame(gpu::Device& device, const SceneData& scene, const 
   recorder_.submit();
   light_grids_ = std::make_unique<LightGrids>(device, scene, *buffers_, settings.shadow_size, settings.seed);
   makePasses();
-  if (settings.specular && buffers_->traits().specular.present) makeSpecular();
+  if (settings.specular && settings.box_tree_builder && buffers_->traits().specular.present) makeSpecular();
   if (make_technique)
     technique_ = make_technique({device, scene, *buffers_, *light_grids_, settings.specular_alpha, settings.seed});
   makeCaustic();
@@ -156,7 +156,7 @@ std::vector<gpu::Constant> RealtimeFrame::lightConstants() const {
 void RealtimeFrame::makeSpecular() {
   specular_.reset();
   recorder_.begin();
-  if (!tree_) tree_ = std::make_unique<TriangleTree>(device_, recorder_, scene_);
+  if (!tree_) tree_ = std::make_unique<TriangleTree>(device_, recorder_, scene_, settings_.box_tree_builder);
   const SpecularPass::Inputs inputs{camera_view_,         seen_,         tint_, lamps_, environment_,
                                     environment_sampler_, *light_grids_, *tree_};
   specular_ =
@@ -465,13 +465,14 @@ Image RealtimeFrame::readGeometry(const std::string& layer) {
   return takeChannels(device_, target, kind >= 3 ? 1 : 3, 1.0F);
 }
 
-std::vector<std::string> describeFrameLimits(const SceneData& scene, float specular_alpha) {
-  bool rough_panes = false, panes = false, spheres = false, rough = false, solids = false;
+std::vector<std::string> describeFrameLimits(const SceneData& scene, const FrameSettings& settings) {
+  bool rough_panes = false, panes = false, spheres = false, rough = false, solids = false, specular = false;
   for (const Material& m : scene.materials) {
+    specular = specular || isSpecular(m, settings.specular_alpha);
     const bool pane = m.transmits() && !m.isSolidDielectric();
     panes = panes || pane || m.alpha_mode == AlphaMode::kBlend;
     solids = solids || m.isSolidDielectric();
-    rough = rough || (m.isSolidDielectric() && m.roughness * m.roughness >= specular_alpha);
+    rough = rough || (m.isSolidDielectric() && m.roughness * m.roughness >= settings.specular_alpha);
     rough_panes = rough_panes || (pane && m.roughness * m.roughness >= kDeltaAlpha);
   }
   for (const Light& light : scene.lights) spheres = spheres || (light.kind != LightKind::kSun && light.radius > 0.0F);
@@ -479,6 +480,8 @@ std::vector<std::string> describeFrameLimits(const SceneData& scene, float specu
   if (rough_panes) limits.emplace_back("rough panes are opaque: no light and no sight passes through them");
   if (panes && spheres)
     limits.emplace_back("a lamp before a pane has the tint of what is seen through the pane behind it");
+  if (settings.specular && specular && !settings.box_tree_builder)
+    limits.emplace_back("specular is black: there is no builder of the tree in which it finds what rays meet");
   if (solids)
     limits.emplace_back(
         "specular has no caustics and no indirect light on what is seen, and no medium around the camera");

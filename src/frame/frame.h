@@ -10,6 +10,7 @@
 #include <string>
 #include <vector>
 
+#include "core/box_tree.h"
 #include "core/image/image.h"
 #include "core/optics/surface.shared.h"
 #include "frame/caustic_pass.h"
@@ -30,6 +31,7 @@ struct FrameSettings {
   std::uint32_t shadow_size = 256;  ///< cells along a side of each view of a light that varies; bears on speed only
   float specular_alpha = 0.25F;     ///< microfacets finer than this are class S
   bool specular = true;             ///< makes that layer, which takes longer than all others
+  BoxTreeBuilder box_tree_builder;  ///< for `specular`, which is not made without one
   std::uint32_t max_events = 12;    ///< of class S, in what is seen in mirrors and through glass
   std::uint32_t seed = 0;
   Rasteriser rasteriser = Rasteriser::kAuto;
@@ -131,7 +133,7 @@ class RealtimeFrame {
   std::uint32_t samples_ = 0;
 };
 
-/// What the scene asks for and the frame does not do yet, a sentence each.
-std::vector<std::string> describeFrameLimits(const SceneData& scene, float specular_alpha = kDefaultSpecularAlpha);
+/// What the scene asks for and a frame of these settings does not do, a sentence each.
+std::vector<std::string> describeFrameLimits(const SceneData& scene, const FrameSettings& settings);
 
 }  // namespace nephroid

@@ -85,14 +85,6 @@ class TexelTables {
   std::vector<vec4> floats_;
 };
 
-/// May some of it be an interface of class S, which reflects or lets through?
-bool isSpecular(const Material& m, float specular_alpha) {
-  const float roughness = std::clamp(m.roughness, 0.0F, 1.0F);
-  const bool fine = roughness * roughness < specular_alpha || m.metallic_roughness_texture.valid();
-  const bool varnished = m.specular_factor > 0.0F && m.ior != 1.0F;
-  return fine && (m.metallic > 0.0F || m.transmits() || varnished);
-}
-
 MaterialRecord describeMaterial(const Material& m, TexelTables& texels, float specular_alpha) {
   MaterialRecord record{};
   record.base = m.base_color;
@@ -190,6 +182,13 @@ std::uint32_t packNormal(const Mesh& mesh, std::uint32_t vertex) {
 }
 
 }  // namespace
+
+bool isSpecular(const Material& m, float specular_alpha) {
+  const float roughness = std::clamp(m.roughness, 0.0F, 1.0F);
+  const bool fine = roughness * roughness < specular_alpha || m.metallic_roughness_texture.valid();
+  const bool varnished = m.specular_factor > 0.0F && m.ior != 1.0F;
+  return fine && (m.metallic > 0.0F || m.transmits() || varnished);
+}
 
 std::vector<gpu::Constant> SceneTraits::constants() const {
   return {{0, metal}, {1, gloss}, {2, conductors}, {3, textures}, {4, passable}};

@@ -41,6 +41,9 @@ struct SceneTraits {
   std::vector<gpu::Constant> constants() const;
 };
 
+/// May some of it be an interface of class S, which reflects or lets through?
+bool isSpecular(const Material& m, float specular_alpha);
+
 class SceneBuffers {
  public:
   /// Bindings 0 to 6 of every pass that reads the scene (frame/tables.glsl).

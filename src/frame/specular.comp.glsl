@@ -3,6 +3,8 @@
 // From each listed pixel two chains are followed, one that the first surface reflects and one that it lets through; at
 // every further surface one way on is drawn in proportion to what it carries, so that the mean over frames is the sum of
 // all. A chain ends on the first surface that it is drawn to see lit (class D), or where it leaves the scene.
+//
+// One loop follows both chains, one after the other: of threads that go in step, none waits for the others between them.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_scalar_block_layout : require
@@ -31,15 +33,9 @@ layout(constant_id = 9) const bool kSceneTransmits = true;
 layout(constant_id = 10) const bool kSceneHasMedia = true;  // that absorb
 layout(constant_id = 11) const bool kSceneDisperses = true;
 
-/// Which way a chain goes at the first surface that has both.
-const uint kReflects = 0u;
-const uint kTransmits = 1u;
-
 struct Path {
   Ray ray;
   vec3 throughput;
-  vec3 radiance;  // of the sum so far, W/m²/sr
-  uint branch;
   bool branched;  // past the first surface that could be seen both ways
   bool ended;
   uint events;
@@ -50,7 +46,14 @@ struct Path {
   Interior interior;
 };
 
-/// What the chain was drawn to see lit.
+/// What a pixel's chains have come to.
+struct Chains {
+  Path path;      // that is followed
+  Path other;     // to follow when that has ended: the other way on from the first surface
+  vec3 radiance;  // of both so far, W/m²/sr
+};
+
+/// What a chain was drawn to see lit.
 struct Receiver {
   bool found;
   uint instance;
@@ -59,8 +62,10 @@ struct Receiver {
   float v;
   vec3 dir;  // of the ray that meets it
   float ior_from;
-  float weight;
+  vec3 weight;
 };
+
+const Receiver kNoReceiver = Receiver(false, 0u, 0u, 0.0, 0.0, vec3(0.0), 1.0, vec3(0.0));
 
 float draw(inout Path path) {
   path.seed = hashChain(path.seed, 1u);
@@ -106,11 +111,9 @@ Surface turnTowards(Surface s, vec3 dir) {
   return s;
 }
 
-void goOn(inout Path path, Surface s, vec3 dir) {
+Ray startFrom(Surface s, vec3 dir) {
   float side = dot(s.geometric, dir) >= 0.0 ? s.position_error : -s.position_error;
-  path.ray = Ray(s.position + side * s.geometric, dir);
-  path.instance = s.instance_index;
-  path.triangle = s.triangle;
+  return Ray(s.position + side * s.geometric, dir);
 }
 
 /// Light that a rough interface passes on straight from the lights without a size, which no ray meets.
@@ -152,49 +155,104 @@ Ways weigh(Path path, Scattered scattered, MaterialPoint m, Surface s, vec3 wo, 
   return Ways(ways.reflected * inverse, ways.transmitted * inverse, ways.lit * inverse);
 }
 
-/// Goes on by reflection or transmission; the first time both ways, a chain each.
-/// @return  whether the chain goes through the surface
-bool chooseWay(inout Path path, Scattered scattered, Ways ways, float u) {
-  bool through;
-  if (!path.branched) {
-    through = path.branch == kTransmits;
-    path.branched = true;
-    path.throughput *= through ? scattered.transmitted_weight : scattered.reflected_weight;
-  } else {
-    through = u >= ways.reflected;
-    float chance = through ? ways.transmitted : ways.reflected;
-    vec3 weight = through ? scattered.transmitted_weight : scattered.reflected_weight;
-    path.throughput *= chance > 0.0 ? weight / chance : vec3(0.0);
+/// A way on from an interface.
+struct Way {
+  vec3 dir;
+  vec3 weight;   // of the radiance that comes along it; 0: there is none
+  bool through;  // to the other side
+};
+
+/// Light must be on the same side of the true and the shaded surface, else it leaks through.
+Way reflection(Scattered scattered, Surface s) {
+  bool leaks = dot(scattered.reflected, s.geometric) <= 0.0;
+  return Way(scattered.reflected, leaks ? vec3(0.0) : scattered.reflected_weight, false);
+}
+Way transmission(Scattered scattered, Surface s) {
+  bool leaks = dot(scattered.transmitted, s.geometric) > 0.0;
+  return Way(scattered.transmitted, leaks ? vec3(0.0) : scattered.transmitted_weight, true);
+}
+
+/// The solid whose boundary a chain meets, if it is one.
+struct Crossing {
+  bool is_solid;
+  bool entering;
+  Interior entered;  // what the chain is inside of if it enters, and if it leaves
+  Interior left;
+};
+
+/// Goes on along a way.
+void take(inout Path path, Way way, Surface s, Crossing crossing, bool is_smooth_pane) {
+  path.throughput *= way.weight;
+  path.events += way.through && is_smooth_pane ? 0u : 1u;
+  path.ended = largest(abs(path.throughput)) == 0.0 || path.events >= max_events;
+  path.ray = startFrom(s, way.dir);
+  if (!kSceneTransmits || !crossing.is_solid) return;
+  // Mirrored inside of a solid that was not listed: it is now known to be inside.
+  bool listed = contains(path.interior, s.instance.solid);
+  bool enters = way.through ? crossing.entering : !crossing.entering && !listed;
+  if (enters && isFull(path.interior)) path.ended = true;
+  if (enters) path.interior = crossing.entered;
+  if (way.through && !crossing.entering) path.interior = crossing.left;
+}
+
+/// Goes straight on, through a hole or the boundary of a solid that another one rules.
+void passOn(inout Path path, Surface s, Crossing crossing) {
+  path.ray = startFrom(s, path.ray.dir);
+  if (!kSceneTransmits || !crossing.is_solid) return;
+  if (crossing.entering && isFull(path.interior)) path.ended = true;
+  path.interior = crossing.entering ? crossing.entered : crossing.left;
+}
+
+/// Goes on by reflection or transmission; the first time both ways, one of which waits.
+/// @param u  decides, in [0, 1 − chance to see the surface itself)
+void branchOrChoose(inout Chains chains, Way reflected, Way transmitted, Ways ways, float u, Surface s,
+                    Crossing crossing, bool is_smooth_pane) {
+  bool first = !chains.path.branched;
+  chains.path.branched = true;
+  if (kSceneTransmits && first) {
+    chains.other = chains.path;
+    chains.other.seed = hashChain(chains.path.seed, 2u);
+    take(chains.other, transmitted, s, crossing, is_smooth_pane);
   }
-  return through;
+  Way way = reflected;
+  if (!first && u >= ways.reflected) way = transmitted;
+  float chance = first ? 1.0 : way.through ? ways.transmitted : ways.reflected;
+  way.weight *= chance > 0.0 ? 1.0 / chance : 0.0;
+  take(chains.path, way, s, crossing, is_smooth_pane);
 }
 
 /// What a chain meets at a surface. @return  the surface itself, if it is drawn
-Receiver meet(inout Path path, Met met, uvec2 pixel) {
-  Receiver receiver = Receiver(false, met.instance, met.triangle, met.u, met.v, path.ray.dir, 1.0, 1.0);
+Receiver meet(inout Chains chains, Met met, uvec2 pixel) {
+  Path path = chains.path;
+  Receiver receiver = kNoReceiver;
   Surface s = surfaceMet(met.instance, met.triangle, met.u, met.v);
   MaterialPoint m = materialAt(s.instance, s.triangle, s.u, s.v);
   bool is_solid = kSceneTransmits && m.optics.is_solid != 0u;
   bool entering = dot(path.ray.dir, s.geometric) < 0.0;
   uint inside = mediumOf(path.interior, kNowhere);
   Boundary boundary = Boundary(inside, inside, true);
-  Medium filling = Medium(m.optics.ior_to, 0.0, vec3(0.0), 0);
+  Crossing crossing = Crossing(is_solid, entering, path.interior, path.interior);
   if (is_solid) {
-    filling = fetchMedium(s.instance.material);
-    boundary = boundaryAt(path.interior, s.instance.solid, s.instance.material, filling.priority, entering);
+    int priority = fetchMedium(s.instance.material).priority;
+    boundary = boundaryAt(path.interior, s.instance.solid, s.instance.material, priority, entering);
+    crossing.entered = enter(path.interior, s.instance.solid, s.instance.material, priority);
+    crossing.left = leave(path.interior, s.instance.solid);
     // Met from the inside without having entered: the way here was inside.
     if (!entering && !contains(path.interior, s.instance.solid)) inside = s.instance.material;
   }
+  path.instance = s.instance_index;
+  path.triangle = s.triangle;
   path.throughput *= transmittanceOf(inside, met.t);
-  if (kSceneEmits && path.events > 0u && (entering || m.double_sided)) path.radiance += path.throughput * m.emission;
+  if (kSceneEmits && path.events > 0u && (entering || m.double_sided)) chains.radiance += path.throughput * m.emission;
 
   s = turnTowards(s, path.ray.dir);
   bool hole = m.coverage < 1.0 && chanceOf(pixel, path.events == 0u ? push.frame : path.seed, s, 0u) >= m.coverage;
   bool hidden = is_solid && !boundary.is_event && !hole;
-  bool crosses = is_solid && hidden;
-  vec3 dir = path.ray.dir;
-  bool mirrored = false;
-  if (!hole && !hidden) {
+  if (hole || hidden) {
+    crossing.is_solid = hidden;
+    passOn(path, s, crossing);
+    chains.path = path;
+  } else {
     Medium from = fetchMedium(boundary.from), to = fetchMedium(boundary.to);
     bool disperses = kSceneDisperses && path.wavelength_nm == 0.0 && (from.dispersion > 0.0 || to.dispersion > 0.0);
     if (disperses) drawWavelength(path, pixel);
@@ -202,47 +260,34 @@ Receiver meet(inout Path path, Met met, uvec2 pixel) {
     if (is_solid) m.optics.ior_to = iorOf(to, path.wavelength_nm);
     bool is_specular = m.optics.alpha < push.specular_alpha;
     vec2 u = kSceneHasRoughSpecular ? vec2(draw(path), draw(path)) : vec2(0.0);
+    vec3 wo = -path.ray.dir;
     Scattered scattered = kSceneHasRoughSpecular && m.optics.alpha > 0.0
-                              ? scatterRough(m.optics, dir, s.shading, u)
-                              : scatterSmooth(m.optics, dir, s.shading);
+                              ? scatterRough(m.optics, -wo, s.shading, u)
+                              : scatterSmooth(m.optics, -wo, s.shading);
     bool is_rough = kSceneHasRoughSpecular && is_specular && m.optics.alpha > 0.0;
-    if (is_rough && (path.branched || path.branch == kReflects))
-      path.radiance += path.throughput * lobeLight(s, m.optics, -dir);
-    Ways ways = weigh(path, scattered, m, s, -dir, is_specular);
+    if (is_rough) chains.radiance += path.throughput * lobeLight(s, m.optics, wo);
+    Ways ways = weigh(path, scattered, m, s, wo, is_specular);
     float choice = draw(path);
     bool sees_it = ways.lit > 0.0 && choice < ways.lit;
+    chains.path = path;
     if (sees_it) {
-      receiver.found = path.events > 0u;
-      receiver.ior_from = m.optics.ior_from;
-      receiver.weight = 1.0 / ways.lit;
-      path.ended = true;
+      receiver = Receiver(path.events > 0u, met.instance, met.triangle, met.u, met.v, -wo, m.optics.ior_from,
+                          path.throughput / ways.lit);
+      chains.path.ended = true;
     } else {
-      bool through = chooseWay(path, scattered, ways, choice - ways.lit);
-      dir = through ? scattered.transmitted : scattered.reflected;
-      // Light must be on the same side of the true and the shaded surface, else it leaks through.
-      if ((dot(dir, s.geometric) > 0.0) == through) path.throughput = vec3(0.0);
-      bool passes = through && m.optics.is_pane != 0u && m.optics.alpha == 0.0;
-      path.events += passes ? 0u : 1u;
-      crosses = is_solid && through;
-      mirrored = is_solid && !through;
-      path.ended = largest(abs(path.throughput)) == 0.0 || path.events >= max_events;
+      branchOrChoose(chains, reflection(scattered, s), transmission(scattered, s), ways, choice - ways.lit, s, crossing,
+                     m.optics.is_pane != 0u && m.optics.alpha == 0.0);
     }
   }
-  // From the inside of a solid that was not listed: it is now known to be inside.
-  bool enters = crosses ? entering : mirrored && !entering && !contains(path.interior, s.instance.solid);
-  if (kSceneTransmits && enters) {
-    if (isFull(path.interior)) path.ended = true;
-    path.interior = enter(path.interior, s.instance.solid, s.instance.material, filling.priority);
-  } else if (kSceneTransmits && crosses) {
-    path.interior = leave(path.interior, s.instance.solid);
-  }
-  goOn(path, s, dir);
   return receiver;
 }
 
-Path startPath(Ray ray, uvec2 pixel, uint branch) {
-  uint seed = hashChain(hashChain(hashChain(0u, pixel.x + (pixel.y << 16)), push.frame), branch);
-  return Path(ray, vec3(1.0), vec3(0.0), branch, false, false, 0u, seed, 0.0, kNowhere, 0u, kInTheOpen);
+Chains startChains(Ray ray, uvec2 pixel) {
+  uint seed = hashChain(hashChain(0u, pixel.x + (pixel.y << 16)), push.frame);
+  Path path = Path(ray, vec3(1.0), false, false, 0u, seed, 0.0, kNowhere, 0u, kInTheOpen);
+  Path none = path;
+  none.ended = true;
+  return Chains(path, none, vec3(0.0));
 }
 
 /// What is shown of a pixel's first surface.
@@ -254,7 +299,7 @@ Met metSeen(Ray ray, uvec2 seen) {
   return Met(dot(place - ray.origin, ray.dir), weights.y, weights.z, seen.x - 1u, seen.y);
 }
 
-/// Light that the chain's last surface sends along it.
+/// Light that a chain's last surface sends along it.
 vec3 litRadiance(Receiver receiver) {
   Surface s = turnTowards(surfaceMet(receiver.instance, receiver.triangle, receiver.u, receiver.v), receiver.dir);
   MaterialPoint m = materialAt(s.instance, s.triangle, s.u, s.v);
@@ -264,44 +309,67 @@ vec3 litRadiance(Receiver receiver) {
   return sum * receiver.weight;
 }
 
-/// Radiance of one chain, W/m²/sr.
-vec3 followChain(Ray ray, uvec2 pixel, uint branch) {
-  Path path = startPath(ray, pixel, branch);
-  Receiver receiver = Receiver(false, 0u, 0u, 0.0, 0.0, ray.dir, 1.0, 0.0);
+/// A step of a chain: to the next surface, or out of the scene. @return  what it was drawn to see lit
+Receiver followStep(inout Chains chains, uvec2 pixel, bool is_first) {
+  Met met;
+  // What lies before the surface that is shown may reflect too, if it can be seen through.
+  if (is_first && !kSceneHasPassable) {
+    met = metSeen(chains.path.ray, texelFetch(seen_image, ivec2(pixel), 0).xy);
+  } else {
+    met = meetFirst(chains.path.ray, chains.path.instance, chains.path.triangle);
+  }
+  bool shows_lights = chains.path.events > 0u;
+  if (kSceneHasLamps && shows_lights) chains.radiance += chains.path.throughput * lampsSeen(chains.path.ray, met.t);
+  if (met.instance != kNowhere) return meet(chains, met, pixel);
+  chains.path.throughput *= transmittanceOf(mediumOf(chains.path.interior, kNowhere), kFarAway);
+  if (kSceneHasEnvironment && shows_lights)
+    chains.radiance += chains.path.throughput * environmentFrom(chains.path.ray.dir);
+  chains.path.ended = true;
+  return kNoReceiver;
+}
+
+/// Radiance of both chains of a pixel, W/m²/sr.
+vec3 followChains(Ray ray, uvec2 pixel) {
+  Chains chains = startChains(ray, pixel);
+  Receiver first = kNoReceiver, second = kNoReceiver;
   // Panes and holes are no events; the limit on steps keeps two facing panes from holding a path for ever.
-  for (uint step = 0u; step < 4u * max_events && !path.ended; ++step) {
-    Met met;
-    // What lies before the surface that is shown may reflect too, if it can be seen through.
-    if (step == 0u && !kSceneHasPassable) {
-      met = metSeen(ray, texelFetch(seen_image, ivec2(pixel), 0).xy);
-    } else {
-      met = meetFirst(path.ray, path.instance, path.triangle);
+  for (uint step = 0u; step < 8u * max_events && !chains.path.ended; ++step) {
+    Receiver receiver = followStep(chains, pixel, step == 0u);
+    if (receiver.found) {
+      second = first;
+      first = receiver;
     }
-    if (kSceneHasLamps && path.events > 0u) path.radiance += path.throughput * lampsSeen(path.ray, met.t);
-    if (met.instance == kNowhere) {
-      path.throughput *= transmittanceOf(mediumOf(path.interior, kNowhere), kFarAway);
-      if (kSceneHasEnvironment && path.events > 0u) path.radiance += path.throughput * environmentFrom(path.ray.dir);
-      path.ended = true;
-    } else {
-      receiver = meet(path, met, pixel);
+    if (chains.path.ended) {
+      chains.path = chains.other;
+      chains.other.ended = true;
     }
   }
-  if (receiver.found) path.radiance += path.throughput * litRadiance(receiver);
-  return path.radiance;
+  while (first.found) {
+    chains.radiance += litRadiance(first);
+    first = second;
+    second.found = false;
+  }
+  return chains.radiance;
 }
 
 void showPixel(uint listed) {
   uvec2 pixel = uvec2(listed & 0xFFFFu, listed >> 16);
   vec2 size = vec2(imageSize(specular_image));
   Ray ray = rayThrough(views[0], (vec2(pixel) + push.film_offset) / size * 2.0 - 1.0);
-  vec3 sum = vec3(0.0);
-  for (uint branch = 0u; branch < (kSceneTransmits ? 2u : 1u); ++branch) sum += followChain(ray, pixel, branch);
   ivec2 place = ivec2(pixel);
-  imageStore(specular_image, place, imageLoad(specular_image, place) + vec4(sum, 0.0));
+  imageStore(specular_image, place, imageLoad(specular_image, place) + vec4(followChains(ray, pixel), 0.0));
+}
+
+/// Groups in the order of their reversed bits: a device that gives each of its cores a range of groups so gives it pixels
+/// from all over the list, however short that is.
+uint spreadGroup() {
+  uint bits = uint(findMSB(gl_NumWorkGroups.x));
+  return bits == 0u ? 0u : bitfieldReverse(gl_WorkGroupID.x) >> (32u - bits);
 }
 
 void main() {
   // Few threads that go through the list: a device that runs threads in step has them all at work.
   uint threads = gl_NumWorkGroups.x * gl_WorkGroupSize.x;
-  for (uint i = gl_GlobalInvocationID.x; i < pixel_count; i += threads) showPixel(pixels[i]);
+  uint thread = spreadGroup() * gl_WorkGroupSize.x + gl_LocalInvocationID.x;
+  for (uint i = thread; i < pixel_count; i += threads) showPixel(pixels[i]);
 }

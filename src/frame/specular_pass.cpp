@@ -1,6 +1,7 @@
 #include "frame/specular_pass.h"
 
 #include <algorithm>
+#include <bit>
 
 #include "core/spectrum.h"
 #include "frame/passes.h"
@@ -13,7 +14,8 @@ namespace {
 
 /// Wavelengths that a dispersive path may have: so many that their discs of colour run into one another.
 constexpr int kBandCount = 64;
-/// Groups of threads that go through the list of pixels: enough for every device, few enough to be all at work.
+/// Groups of threads that go through the list of pixels: enough for every device, few enough to be all at work. A power
+/// of two, as frame/specular.comp.glsl wants their number.
 constexpr std::uint32_t kMaxGroups = 2048;
 
 /// Pushed by frame/specular_push.glsl.
@@ -112,7 +114,7 @@ void SpecularPass::record(gpu::CommandRecorder& recorder, const SamplePush& samp
     commands.bindResources(bound);
     commands.pushConstants(push);
     const std::uint32_t pixels = sum_.desc().width * sum_.desc().height;
-    commands.dispatch(std::min(gpu::groupsOf(pixels, 64), kMaxGroups));
+    commands.dispatch(std::min(std::bit_ceil(gpu::groupsOf(pixels, 64)), kMaxGroups));
   });
 }
 

@@ -21,14 +21,6 @@ constexpr float kPositionErrorScale = 0x1p-19F;
 /// Embree counts a hit at distance zero. No length: any positive number serves.
 constexpr float kRayStart = 1e-30F;
 
-/// Wider vectors lower the clock of some processors by more than they gain.
-#ifdef NEPHROID_SANITIZE_THREAD
-// The sanitizer cannot look into Embree's own threads.
-constexpr const char* kEmbreeConfig = "frequency_level=simd256,threads=1";
-#else
-constexpr const char* kEmbreeConfig = "frequency_level=simd256";
-#endif
-
 /// Fewer rays than this are traced one by one: a packet costs about as much as so many.
 constexpr std::size_t kSmallestPacket = 3;
 

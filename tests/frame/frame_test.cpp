@@ -5,6 +5,7 @@
 
 #include "support/gpu_fixture.h"
 #include "support/tiny_scenes.h"
+#include "trace/box_tree_builder.h"
 
 namespace nephroid {
 namespace {
@@ -177,11 +178,12 @@ TEST_F(FrameTest, OnePixelAndNoSceneAreNoSpecialCases) {
 
 TEST_F(FrameTest, SaysWhatItLeavesOut) {
   SceneData scene = makeFloorScene(test::makePoint(vec3(0, 1.5F, 0), vec3(5), 0.1F));
-  EXPECT_TRUE(describeFrameLimits(scene).empty());
+  const FrameSettings settings{.box_tree_builder = buildBoxTree};
+  EXPECT_TRUE(describeFrameLimits(scene, settings).empty());
   scene.materials[0].transmission = 1.0F;  // a pane, and rough
-  EXPECT_EQ(describeFrameLimits(scene).size(), 2U);
+  EXPECT_EQ(describeFrameLimits(scene, settings).size(), 2U);
   scene.materials[0].roughness = 0.0F;
-  EXPECT_EQ(describeFrameLimits(scene).size(), 1U);
+  EXPECT_EQ(describeFrameLimits(scene, settings).size(), 1U);
 }
 
 TEST_F(FrameTest, TimesGridsAndPixels) {

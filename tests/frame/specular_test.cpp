@@ -7,15 +7,20 @@
 #include "scene/load.h"
 #include "support/gpu_fixture.h"
 #include "support/tiny_scenes.h"
+#include "trace/box_tree_builder.h"
 
 namespace nephroid {
 namespace {
 
 class SpecularTest : public testing::GpuTest {
  protected:
+  static FrameSettings makeSettings(int size, std::uint32_t max_events) {
+    return {.width = size, .height = size, .box_tree_builder = buildBoxTree, .max_events = max_events};
+  }
+
   static Image render(const SceneData& scene, const Camera& camera, int size, std::uint32_t samples,
                       std::uint32_t max_events = 12) {
-    RealtimeFrame frame(device(), scene, camera, {.width = size, .height = size, .max_events = max_events});
+    RealtimeFrame frame(device(), scene, camera, makeSettings(size, max_events));
     for (std::uint32_t s = 0; s < samples; ++s) frame.render(s);
     return frame.readSummed("specular");
   }
@@ -108,7 +113,7 @@ TEST_F(SpecularTest, AnEvenSkyMakesClearGlassInvisible) {
   constexpr int kSize = 48;
   for (const float ortho : {0.0F, 2.4F}) {
     const Camera camera = makeCamera("eye", vec3(0.3F, 1.0F, 4), vec3(0), 0.6F, ortho);
-    RealtimeFrame frame(device(), scene, camera, {.width = kSize, .height = kSize, .max_events = 64});
+    RealtimeFrame frame(device(), scene, camera, makeSettings(kSize, 64));
     frame.render(0);
     const Image specular = frame.readSummed("specular"), emission = frame.readSummed("emission");
     double sum = 0;
@@ -277,6 +282,22 @@ TEST_F(SpecularTest, CheckersAreSeenWhereTheReferenceSeesThem) {
     RecordProperty(name + "_displaced_by_two", std::to_string(two));
     EXPECT_LT(two, 0.005) << name;
   }
+}
+
+TEST_F(SpecularTest, NothingIsSpecularWithoutABuilder) {
+  SceneData scene;
+  test::addObject(scene, test::makeFloor(2.0), test::makeMetal(vec3(0.9F, 0.6F, 0.3F)));
+  test::addObject(scene, makeWall(), makeGlow(vec3(1, 2, 3)));
+  FrameSettings settings = makeSettings(16, 12);
+  EXPECT_TRUE(describeFrameLimits(scene, settings).empty());
+  settings.box_tree_builder = nullptr;
+  RealtimeFrame frame(device(), scene, lookAslant(0.5F), settings);
+  frame.render(0);
+  frame.objectsMoved();
+  frame.render(0);
+  EXPECT_EQ(test::meanOf(frame.readSummed("specular")), dvec3(0));
+  ASSERT_EQ(describeFrameLimits(scene, settings).size(), 1U);
+  EXPECT_NE(describeFrameLimits(scene, settings)[0].find("specular is black"), std::string::npos);
 }
 
 TEST_F(SpecularTest, DispersionKeepsWhiteWhite) {

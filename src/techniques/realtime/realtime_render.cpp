@@ -15,6 +15,7 @@
 #include "techniques/layers.h"
 #include "techniques/realtime/open_device.h"
 #include "techniques/settings.h"
+#include "trace/box_tree_builder.h"
 
 namespace nephroid {
 namespace {
@@ -219,6 +220,7 @@ std::vector<ParamSpec> makeFrameParams() {
 FrameSettings makeFrameSettings(const ParamSet& params) {
   return {.shadow_size = static_cast<std::uint32_t>(params.getInt("shadow-size")),
           .specular_alpha = params.getFloat("specular-alpha"),
+          .box_tree_builder = buildBoxTree,
           .max_events = static_cast<std::uint32_t>(params.getInt("max-events"))};
 }
 
@@ -240,7 +242,7 @@ RenderResult renderRealtime(const Technique& technique, const SceneData& scene, 
     open.keepPipelines();
     result = frames.run();
   }
-  for (std::string& limit : describeFrameLimits(scene, settings.params.getFloat("specular-alpha")))
+  for (std::string& limit : describeFrameLimits(scene, makeSettings(settings)))
     result.notes.push_back(std::move(limit));
   open.checkValidation();
   return result;
