@@ -81,26 +81,37 @@ ViewRecord makeCubeView(vec3 eye, int face, const Bounds& bounds) {
   return makePerspectiveView(eye, forward, up, 1.0F, fitDepthRange(bounds, eye, forward));
 }
 
+namespace {
+
+Bounds boundsAlong(const Frame& frame, const Bounds& bounds) {
+  Bounds local;
+  for (int corner = 0; corner < 8; ++corner) local.add(frame.toLocal(cornerOf(bounds, corner)));
+  return local;
+}
+
+}  // namespace
+
 ViewRecord makeParallelView(vec3 direction, const Bounds& bounds) {
+  return makeParallelView(direction, bounds, bounds);
+}
+
+ViewRecord makeParallelView(vec3 direction, const Bounds& across, const Bounds& along) {
+  const Bounds origin{vec3(0.0F), vec3(0.0F)};
   const Frame frame = Frame::fromZ(direction);
-  if (bounds.empty()) return makeParallelView(direction, Bounds{vec3(0.0F), vec3(0.0F)});
-  vec3 lower(kInfinity), upper(-kInfinity);
-  for (int corner = 0; corner < 8; ++corner) {
-    const vec3 p = cornerOf(bounds, corner);
-    const vec3 local = frame.toLocal(p);
-    lower = glm::min(lower, local);
-    upper = glm::max(upper, local);
-  }
-  const vec3 middle = 0.5F * (lower + upper);
+  const Bounds sides = boundsAlong(frame, across.empty() ? origin : across);
+  const Bounds ends = boundsAlong(frame, along.empty() ? origin : along);
   // A flat scene seen edge-on has no width; a sliver keeps the projection regular.
-  const vec3 half = glm::max(0.5F * (upper - lower) * 1.001F, vec3(1e-6F * std::max(length(upper - lower), 1e-30F)));
+  const float sliver = 1e-6F * std::max(2.0F * ends.radius(), 1e-30F);
+  const vec3 half = glm::max(0.5F * sides.extent() * 1.001F, vec3(sliver));
+  const float half_depth = std::max(0.5F * ends.extent().z * 1.001F, sliver);
   ViewRecord view{};
   view.is_orthographic = 1;
   view.forward = direction;
   view.right = frame.x * half.x;
   view.up = frame.y * half.y;
-  view.eye = frame.toWorld(vec3(middle.x, middle.y, lower.z - half.z));
-  setClipRows(view, {0.0F, 4.0F * half.z}, vec2(0.0F));
+  view.film_x = view.film_y = 0.5F;
+  view.eye = frame.toWorld(vec3(sides.centre().x, sides.centre().y, ends.lower.z - half_depth));
+  setClipRows(view, {0.0F, 4.0F * half_depth}, vec2(0.0F));
   return view;
 }
 

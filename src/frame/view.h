@@ -26,6 +26,8 @@ ViewRecord makeCubeView(vec3 eye, int face, const Bounds& bounds);
 
 /// Parallel rays along `direction` that cover `bounds`.
 ViewRecord makeParallelView(vec3 direction, const Bounds& bounds);
+/// Likewise, as wide as `across` and as deep as `along`.
+ViewRecord makeParallelView(vec3 direction, const Bounds& across, const Bounds& along);
 
 /// False only if nothing inside `bounds` can be seen.
 bool mayShow(const ViewRecord& view, const Bounds& bounds);

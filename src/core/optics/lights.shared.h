@@ -48,6 +48,16 @@ NEPHROID_FN vec3 irradianceFromSun(vec3 irradiance_perpendicular, float cos_thet
   return irradiance_perpendicular * max(cos_theta_i, 0.0f);
 }
 
+/// Solid angle of a small cell on the plane at distance 1 from a point: ω = A·cos³, sr. (Of the texel (u, v) of a cube
+/// map's face, A = 4/N²; over six faces it sums to 4π, but for the midpoint rule's error of order 1/N².)
+///
+/// @param u, v  of the cell's middle, from the foot of the perpendicular
+/// @param area  of the cell on that plane
+NEPHROID_FN float cellSolidAngle(float u, float v, float area) {
+  float squared = 1.0f + u * u + v * v;
+  return area / (squared * sqrt(squared));
+}
+
 NEPHROID_NAMESPACE_END
 
 #endif

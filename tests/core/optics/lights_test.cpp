@@ -14,6 +14,24 @@ TEST(SpotFalloff, IsOneInsideAndZeroOutside) {
   for (const float c : {0.5F, 0.2F, -1.0F}) EXPECT_EQ(spotFalloff(c, 0.9F, 0.5F), 0.0F) << c;
 }
 
+TEST(CellSolidAngle, IsTheExactOneOfATexelToTheMidpointRulesError) {
+  // Exactly, the difference of atan2(uv, √(1+u²+v²)) at the texel's corners.
+  const auto corner = [](double u, double v) { return std::atan2(u * v, std::sqrt(1.0 + u * u + v * v)); };
+  const int n = 64;
+  double sum = 0.0;
+  for (int y = 0; y < n; ++y)
+    for (int x = 0; x < n; ++x) {
+      const double a = 2.0 * x / n - 1.0, b = 2.0 * (x + 1) / n - 1.0, c = 2.0 * y / n - 1.0,
+                   d = 2.0 * (y + 1) / n - 1.0;
+      const double exact = corner(b, d) - corner(a, d) - corner(b, c) + corner(a, c);
+      const float found =
+          cellSolidAngle(static_cast<float>(0.5 * (a + b)), static_cast<float>(0.5 * (c + d)), 4.0F / (n * n));
+      ASSERT_NEAR(found / exact, 1.0, 2.0 / (n * n)) << x << ", " << y;
+      sum += found;
+    }
+  EXPECT_NEAR(6.0 * sum / (4.0 * kPi), 1.0, 1e-4);
+}
+
 TEST(SpotFalloff, IsTheSquareOfALinearRampInTheCosine) {
   EXPECT_NEAR(spotFalloff(0.7F, 0.9F, 0.5F), 0.25F, 1e-6F);
   EXPECT_NEAR(spotFalloff(0.8F, 0.9F, 0.5F), 0.5625F, 1e-6F);

@@ -20,6 +20,7 @@ struct LightsOutput {
   vec3 spot;
   vec3 from_point;
   vec3 from_sun;
+  float solid_angle;
 };
 
 NEPHROID_FN LightsOutput evaluateLights(LightsInput given) {
@@ -28,6 +29,7 @@ NEPHROID_FN LightsOutput evaluateLights(LightsInput given) {
   result.spot = spotIntensity(given.intensity, given.axis, given.cos_inner, given.cos_outer, given.dir);
   result.from_point = irradianceFromPoint(given.intensity, given.distance_squared, given.cos_theta_i);
   result.from_sun = irradianceFromSun(given.intensity, given.cos_theta_i);
+  result.solid_angle = cellSolidAngle(3.0f * given.dir.x, given.cos_theta_i, 1.0f);
   return result;
 }
 

@@ -70,6 +70,8 @@ TEST_F(LightsTwin, GpuAgreesWithCpu) {
   // A product and a quotient: 4.5 ulp; a product: 1.5 ulp.
   NEPHROID_EXPECT_TWINS(run, from_point, {.relative = 6e-7});
   NEPHROID_EXPECT_TWINS(run, from_sun, {.relative = 2e-7});
+  // A sum of squares, its root and a quotient: 20 ulp.
+  NEPHROID_EXPECT_TWINS(run, solid_angle, {.relative = 3e-6});
 }
 
 TEST_F(LightsTwin, GpuAgreesWithCpuOnHardEdges) {
