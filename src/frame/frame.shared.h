@@ -45,6 +45,7 @@ struct InstanceRecord {
 NEPHROID_CONST uint kInstanceMirrored = 1u;    // the winding is reversed in world space
 NEPHROID_CONST uint kInstanceHasNormals = 2u;  // else flat
 NEPHROID_CONST uint kInstancePassable = 4u;    // its material may let light pass straight through
+NEPHROID_CONST uint kInstanceGenerates = 8u;   // casts caustics
 
 /// A material; see scene/scene_data.h for the terms. Indices of textures are kNowhere where there is none.
 struct MaterialRecord {

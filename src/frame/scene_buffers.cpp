@@ -194,9 +194,15 @@ std::vector<gpu::Constant> SceneTraits::constants() const {
   return {{0, metal}, {1, gloss}, {2, conductors}, {3, textures}, {4, passable}};
 }
 
+std::vector<gpu::Constant> SceneTraits::pathConstants() const {
+  return {{0, specular.metal},     {1, true},           {2, conductors},         {3, textures},
+          {4, passable},           {8, specular.rough}, {9, specular.transmits}, {10, specular.media},
+          {11, specular.disperses}};
+}
+
 SceneBuffers::SceneBuffers(gpu::Device& device, gpu::CommandRecorder& recorder, const SceneData& scene,
                            float specular_alpha)
-    : sampler_(device, {.filter = VK_FILTER_NEAREST}, "tables") {
+    : sampler_(device, {.filter = VK_FILTER_NEAREST}, "tables"), classes_(classifyMaterials(scene, specular_alpha)) {
   for (const Material& material : scene.materials) addTraits(traits_, material, specular_alpha);
   uploadMeshes(device, recorder, scene);
   updateInstances(device, recorder, scene);
@@ -264,6 +270,8 @@ void SceneBuffers::updateInstances(gpu::Device& device, gpu::CommandRecorder& re
     if (glm::determinant(mat3(m)) < 0.0F) record.flags |= kInstanceMirrored;
     if (!mesh.normals.empty()) record.flags |= kInstanceHasNormals;
     if (passable) record.flags |= kInstancePassable;
+    const bool generates = instance.casts && classes_[mesh.material].is_generator;
+    if (generates) record.flags |= kInstanceGenerates;
     instances.push_back(record);
     if (mesh.triangles.empty()) continue;
     Bounds bounds;
@@ -273,6 +281,8 @@ void SceneBuffers::updateInstances(gpu::Device& device, gpu::CommandRecorder& re
                       .first_index = 3 * place.first_triangle,
                       .vertex_offset = static_cast<std::int32_t>(place.first_vertex),
                       .passable = passable,
+                      .generates = generates,
+                      .receives = classes_[mesh.material].is_receiver,
                       .bounds = bounds});
   }
   instances_ = makeTable<InstanceRecord>(device, recorder, instances, "instances");

@@ -7,6 +7,7 @@
 #include "core/math.h"
 #include "frame/frame.shared.h"
 #include "gpu/commands.h"
+#include "scene/classify.h"
 #include "scene/scene_data.h"
 
 namespace nephroid {
@@ -39,6 +40,8 @@ struct SceneTraits {
 
   /// Specialisation constants of frame/tables.glsl.
   std::vector<gpu::Constant> constants() const;
+  /// Of frame/path.glsl, and of frame/tables.glsl for what paths meet: lobes of class S.
+  std::vector<gpu::Constant> pathConstants() const;
 };
 
 /// May some of it be an interface of class S, which reflects or lets through?
@@ -70,7 +73,9 @@ class SceneBuffers {
     std::uint32_t instance = 0;
     std::uint32_t index_count = 0, first_index = 0;
     std::int32_t vertex_offset = 0;
-    bool passable = false;  ///< light and sight may pass straight through it
+    bool passable = false;   ///< light and sight may pass straight through it
+    bool generates = false;  ///< casts caustics
+    bool receives = false;   ///< catches them
     Bounds bounds;          ///< world
   };
   const std::vector<Draw>& draws() const { return draws_; }
@@ -90,7 +95,8 @@ class SceneBuffers {
   };
 
   gpu::Sampler sampler_;
-  std::vector<MeshPlace> places_;  ///< by mesh
+  std::vector<MeshPlace> places_;        ///< by mesh
+  std::vector<Classification> classes_;  ///< by material
   gpu::Buffer positions_, indices_;
   gpu::Image triangles_, instances_, materials_, attributes_, textures_, byte_texels_, float_texels_;
   std::vector<Draw> draws_;

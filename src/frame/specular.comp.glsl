@@ -12,11 +12,8 @@
 #define NEPHROID_LIGHT_BINDINGS 7
 #include "frame/lights.glsl"
 #include "frame/passable.glsl"
-#include "frame/interior.glsl"
-#include "core/optics/absorption.shared.h"
-#include "core/optics/dispersion.shared.h"
 #include "frame/specular_push.glsl"
-#include "frame/specular_lobe.glsl"
+#include "frame/path.glsl"
 #define NEPHROID_TREE_BINDINGS 18
 #include "frame/triangle_tree.glsl"
 #define NEPHROID_SKY_BINDINGS 14
@@ -28,23 +25,6 @@ layout(set = 0, binding = 12) uniform usampler2D seen_image;
 layout(set = 0, binding = 13) uniform sampler2D band_table;  // wavelength in nm, and weight times their count
 layout(scalar, set = 0, binding = 16) readonly buffer Pixels { uint pixel_count; uint pixels[]; };
 layout(set = 0, binding = 17, rgba32f) uniform image2D specular_image;  // sum over samples, W/m²/sr
-
-layout(constant_id = 9) const bool kSceneTransmits = true;
-layout(constant_id = 10) const bool kSceneHasMedia = true;  // that absorb
-layout(constant_id = 11) const bool kSceneDisperses = true;
-
-struct Path {
-  Ray ray;
-  vec3 throughput;
-  bool branched;  // past the first surface that could be seen both ways
-  bool ended;
-  uint events;
-  uint seed;            // of the next chance
-  float wavelength_nm;  // 0 until something dispersive was met
-  uint instance;        // on which the ray starts
-  uint triangle;
-  Interior interior;
-};
 
 /// What a pixel's chains have come to.
 struct Chains {
@@ -67,53 +47,12 @@ struct Receiver {
 
 const Receiver kNoReceiver = Receiver(false, 0u, 0u, 0.0, 0.0, vec3(0.0), 1.0, vec3(0.0));
 
-float draw(inout Path path) {
-  path.seed = hashChain(path.seed, 1u);
-  return float(path.seed >> 8) / 16777216.0;
-}
-
-float largest(vec3 v) { return max(v.x, max(v.y, v.z)); }
-float luminanceOf(vec3 rgb) { return dot(rgb, vec3(0.2126, 0.7152, 0.0722)); }
-
-vec3 transmittanceOf(uint material, float distance) {
-  return kSceneHasMedia ? transmittance(fetchMedium(material).sigma_a, distance) : vec3(1.0);
-}
-
-float iorOf(Medium medium, float wavelength_nm) {
-  if (!kSceneDisperses || medium.dispersion == 0.0 || wavelength_nm == 0.0) return medium.ior;
-  return dispersiveIor(medium.ior, medium.dispersion, wavelength_nm);
-}
-
 /// Each pixel goes through all bands in as many frames, in an order that spreads them.
 void drawWavelength(inout Path path, uvec2 pixel) {
   uint first = hashChain(pixel.x + (pixel.y << 16), 0x57u);
   vec4 band = texelFetch(band_table, texelOf((first + push.frame * 39u) % band_count), 0);
   path.wavelength_nm = band.x;
   path.throughput *= band.yzw;
-}
-
-Surface surfaceMet(uint instance_index, uint triangle, float u, float v) {
-  InstanceRecord instance = fetchInstance(instance_index);
-  TriangleRecord record = fetchTriangle(instance.first_triangle + triangle);
-  Surface s = surfaceAt(instance_index, triangle, instance, record, toWorld(instance, record), u, v);
-  return s;
-}
-
-/// Turns both normals to where the ray comes from.
-Surface turnTowards(Surface s, vec3 dir) {
-  if (kSceneHasTextures) s.shading = perturbedNormal(s);
-  if (dot(dir, s.geometric) >= 0.0) {
-    s.geometric = -s.geometric;
-    s.shading = -s.shading;
-  }
-  // Near a silhouette the interpolated normal may look away from the path: the true one cannot.
-  if (dot(s.shading, -dir) <= 1e-4) s.shading = s.geometric;
-  return s;
-}
-
-Ray startFrom(Surface s, vec3 dir) {
-  float side = dot(s.geometric, dir) >= 0.0 ? s.position_error : -s.position_error;
-  return Ray(s.position + side * s.geometric, dir);
 }
 
 /// Light that a rough interface passes on straight from the lights without a size, which no ray meets.
@@ -155,54 +94,6 @@ Ways weigh(Path path, Scattered scattered, MaterialPoint m, Surface s, vec3 wo, 
   return Ways(ways.reflected * inverse, ways.transmitted * inverse, ways.lit * inverse);
 }
 
-/// A way on from an interface.
-struct Way {
-  vec3 dir;
-  vec3 weight;   // of the radiance that comes along it; 0: there is none
-  bool through;  // to the other side
-};
-
-/// Light must be on the same side of the true and the shaded surface, else it leaks through.
-Way reflection(Scattered scattered, Surface s) {
-  bool leaks = dot(scattered.reflected, s.geometric) <= 0.0;
-  return Way(scattered.reflected, leaks ? vec3(0.0) : scattered.reflected_weight, false);
-}
-Way transmission(Scattered scattered, Surface s) {
-  bool leaks = dot(scattered.transmitted, s.geometric) > 0.0;
-  return Way(scattered.transmitted, leaks ? vec3(0.0) : scattered.transmitted_weight, true);
-}
-
-/// The solid whose boundary a chain meets, if it is one.
-struct Crossing {
-  bool is_solid;
-  bool entering;
-  Interior entered;  // what the chain is inside of if it enters, and if it leaves
-  Interior left;
-};
-
-/// Goes on along a way.
-void take(inout Path path, Way way, Surface s, Crossing crossing, bool is_smooth_pane) {
-  path.throughput *= way.weight;
-  path.events += way.through && is_smooth_pane ? 0u : 1u;
-  path.ended = largest(abs(path.throughput)) == 0.0 || path.events >= max_events;
-  path.ray = startFrom(s, way.dir);
-  if (!kSceneTransmits || !crossing.is_solid) return;
-  // Mirrored inside of a solid that was not listed: it is now known to be inside.
-  bool listed = contains(path.interior, s.instance.solid);
-  bool enters = way.through ? crossing.entering : !crossing.entering && !listed;
-  if (enters && isFull(path.interior)) path.ended = true;
-  if (enters) path.interior = crossing.entered;
-  if (way.through && !crossing.entering) path.interior = crossing.left;
-}
-
-/// Goes straight on, through a hole or the boundary of a solid that another one rules.
-void passOn(inout Path path, Surface s, Crossing crossing) {
-  path.ray = startFrom(s, path.ray.dir);
-  if (!kSceneTransmits || !crossing.is_solid) return;
-  if (crossing.entering && isFull(path.interior)) path.ended = true;
-  path.interior = crossing.entering ? crossing.entered : crossing.left;
-}
-
 /// Goes on by reflection or transmission; the first time both ways, one of which waits.
 /// @param u  decides, in [0, 1 − chance to see the surface itself)
 void branchOrChoose(inout Chains chains, Way reflected, Way transmitted, Ways ways, float u, Surface s,
@@ -225,27 +116,15 @@ void branchOrChoose(inout Chains chains, Way reflected, Way transmitted, Ways wa
 Receiver meet(inout Chains chains, Met met, uvec2 pixel) {
   Path path = chains.path;
   Receiver receiver = kNoReceiver;
-  Surface s = surfaceMet(met.instance, met.triangle, met.u, met.v);
-  MaterialPoint m = materialAt(s.instance, s.triangle, s.u, s.v);
-  bool is_solid = kSceneTransmits && m.optics.is_solid != 0u;
-  bool entering = dot(path.ray.dir, s.geometric) < 0.0;
-  uint inside = mediumOf(path.interior, kNowhere);
-  Boundary boundary = Boundary(inside, inside, true);
-  Crossing crossing = Crossing(is_solid, entering, path.interior, path.interior);
-  if (is_solid) {
-    int priority = fetchMedium(s.instance.material).priority;
-    boundary = boundaryAt(path.interior, s.instance.solid, s.instance.material, priority, entering);
-    crossing.entered = enter(path.interior, s.instance.solid, s.instance.material, priority);
-    crossing.left = leave(path.interior, s.instance.solid);
-    // Met from the inside without having entered: the way here was inside.
-    if (!entering && !contains(path.interior, s.instance.solid)) inside = s.instance.material;
-  }
-  path.instance = s.instance_index;
-  path.triangle = s.triangle;
-  path.throughput *= transmittanceOf(inside, met.t);
-  if (kSceneEmits && path.events > 0u && (entering || m.double_sided)) chains.radiance += path.throughput * m.emission;
+  bool emission_seen;
+  Encounter e = encounter(path, met, emission_seen);
+  Surface s = e.surface;
+  MaterialPoint m = e.material;
+  Boundary boundary = e.boundary;
+  Crossing crossing = e.crossing;
+  bool is_solid = crossing.is_solid;
+  if (kSceneEmits && path.events > 0u && emission_seen) chains.radiance += path.throughput * m.emission;
 
-  s = turnTowards(s, path.ray.dir);
   bool hole = m.coverage < 1.0 && chanceOf(pixel, path.events == 0u ? push.frame : path.seed, s, 0u) >= m.coverage;
   bool hidden = is_solid && !boundary.is_event && !hole;
   if (hole || hidden) {
@@ -288,15 +167,6 @@ Chains startChains(Ray ray, uvec2 pixel) {
   Path none = path;
   none.ended = true;
   return Chains(path, none, vec3(0.0));
-}
-
-/// What is shown of a pixel's first surface.
-Met metSeen(Ray ray, uvec2 seen) {
-  InstanceRecord instance = fetchInstance(seen.x - 1u);
-  Triangle corners = toWorld(instance, fetchTriangle(instance.first_triangle + seen.y));
-  vec3 weights = weightsOn(corners, ray);
-  vec3 place = corners.a + weights.y * (corners.b - corners.a) + weights.z * (corners.c - corners.a);
-  return Met(dot(place - ray.origin, ray.dir), weights.y, weights.z, seen.x - 1u, seen.y);
 }
 
 /// Light that a chain's last surface sends along it.

@@ -33,10 +33,7 @@ gpu::Image makeBandTable(gpu::Device& device, gpu::CommandRecorder& recorder) {
 }
 
 std::vector<gpu::Constant> constantsOf(const SceneTraits& traits, const std::vector<gpu::Constant>& lights) {
-  const SpecularTraits& s = traits.specular;
-  std::vector<gpu::Constant> constants{{0, s.metal},         {1, true},    {2, traits.conductors}, {3, traits.textures},
-                                       {4, traits.passable}, {8, s.rough}, {9, s.transmits},       {10, s.media},
-                                       {11, s.disperses}};
+  std::vector<gpu::Constant> constants = traits.pathConstants();
   constants.insert(constants.end(), lights.begin(), lights.end());
   return constants;
 }

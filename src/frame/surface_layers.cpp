@@ -1,10 +1,12 @@
 #include "frame/surface_layers.h"
 
+#include "core/assert.h"
 #include "frame/passes.h"
+#include "frame/view.h"
+#include "shaders/frame/layer.vert.h"
 #include "shaders/frame/peel.frag.h"
 #include "shaders/frame/surface_layers.comp.h"
 #include "shaders/frame/visibility.frag.h"
-#include "shaders/frame/visibility.vert.h"
 
 namespace nephroid {
 namespace {
@@ -17,9 +19,10 @@ constexpr std::uint32_t kGroup = 8;
 gpu::GraphicsPipeline makeDraw(gpu::Device& device, gpu::Spirv fragment, std::vector<gpu::Binding> bindings,
                                const SceneBuffers& buffers, const char* name) {
   return {device,
-          {.vertex = shaders::visibility_vert,
+          {.vertex = shaders::layer_vert,
            .fragment = fragment,
            .bindings = std::move(bindings),
+           .push_bytes = sizeof(std::uint32_t),
            .constants = buffers.traits().constants(),
            .vertex_buffers = {{0, sizeof(vec3), VK_VERTEX_INPUT_RATE_VERTEX}},
            .attributes = {{0, 0, VK_FORMAT_R32G32B32_SFLOAT, 0}},
@@ -37,21 +40,24 @@ gpu::Image makeLayers(gpu::Device& device, VkFormat format, std::uint32_t size, 
 
 }  // namespace
 
-SurfaceLayers::SurfaceLayers(gpu::Device& device, const SceneBuffers& buffers, std::uint32_t size, std::uint32_t layers)
+SurfaceLayers::SurfaceLayers(gpu::Device& device, const SceneBuffers& buffers, std::uint32_t size, std::uint32_t views,
+                             std::uint32_t layers)
     : buffers_(buffers),
       first_(makeDraw(device, shaders::visibility_frag, SceneBuffers::bindings({kTable}), buffers, "first layer")),
       next_(makeDraw(device, shaders::peel_frag, SceneBuffers::bindings({kTable, kTexture}), buffers, "next layer")),
       places_(device,
               {.shader = shaders::surface_layers_comp,
                .bindings = SceneBuffers::bindings({kTable, kTexture, kStorage}),
+               .push_bytes = sizeof(std::uint32_t),
                .constants = buffers.traits().constants()},
               "places of layers"),
-      view_(device, sizeof(ViewRecord), VK_BUFFER_USAGE_STORAGE_BUFFER_BIT, gpu::MemoryIntent::kDevice,
-            "view of layers"),
-      seen_(makeLayers(device, kSeenFormat, size, layers,
+      layer_count_(layers),
+      views_(device, views * sizeof(ViewRecord), VK_BUFFER_USAGE_STORAGE_BUFFER_BIT, gpu::MemoryIntent::kDevice,
+             "views of layers"),
+      seen_(makeLayers(device, kSeenFormat, size, views * layers,
                        VK_IMAGE_USAGE_COLOR_ATTACHMENT_BIT | VK_IMAGE_USAGE_SAMPLED_BIT, "seen in layers")),
-      surfaces_(makeLayers(device, kFloat4, size, layers, VK_IMAGE_USAGE_STORAGE_BIT | VK_IMAGE_USAGE_SAMPLED_BIT,
-                           "surfaces in layers")) {
+      surfaces_(makeLayers(device, kFloat4, size, views * layers,
+                           VK_IMAGE_USAGE_STORAGE_BIT | VK_IMAGE_USAGE_SAMPLED_BIT, "surfaces in layers")) {
   for (gpu::Image& depth : depths_)
     depth = gpu::Image(device,
                        {.format = kDepthFormat,
@@ -61,40 +67,50 @@ SurfaceLayers::SurfaceLayers(gpu::Device& device, const SceneBuffers& buffers, s
                        "depth of a layer");
 }
 
-void SurfaceLayers::record(gpu::CommandRecorder& recorder, const ViewRecord& view, std::span<const std::size_t> draws) {
-  recorder.upload(view_, std::as_bytes(std::span(&view, 1)));
-  for (std::uint32_t layer = 0; layer < count(); ++layer) recordLayer(recorder, draws, layer);
+void SurfaceLayers::record(gpu::CommandRecorder& recorder, std::span<const ViewRecord> views,
+                           std::span<const std::size_t> draws) {
+  view_count_ = static_cast<std::uint32_t>(views.size());
+  NEPHROID_ASSERT_LE(view_count_ * layer_count_, seen_.desc().layers);
+  recorder.upload(views_, std::as_bytes(views));
+  for (std::uint32_t v = 0; v < view_count_; ++v)
+    for (std::uint32_t layer = 0; layer < layer_count_; ++layer) recordLayer(recorder, views[v], draws, v, layer);
   const std::vector<Use> uses =
-      buffers_.uses(Access::kComputeRead, {Use(view_, Access::kComputeRead), Use(seen_, Access::kComputeRead),
+      buffers_.uses(Access::kComputeRead, {Use(views_, Access::kComputeRead), Use(seen_, Access::kComputeRead),
                                            Use(surfaces_, Access::kComputeWrite, true)});
   recorder.pass("places of layers", uses, [&](PassCommands& commands) {
     commands.bind(places_);
-    commands.bindResources(buffers_.bound({Bound(7, view_), Bound(8, seen_, buffers_.sampler()), Bound(9, surfaces_)}));
+    commands.bindResources(
+        buffers_.bound({Bound(7, views_), Bound(8, seen_, buffers_.sampler()), Bound(9, surfaces_)}));
+    commands.pushConstants(layer_count_);
     const std::uint32_t groups = gpu::groupsOf(size(), kGroup);
-    commands.dispatch(groups, groups, count());
+    commands.dispatch(groups, groups, view_count_ * layer_count_);
   });
 }
 
-void SurfaceLayers::recordLayer(gpu::CommandRecorder& recorder, std::span<const std::size_t> draws,
-                                std::uint32_t layer) {
+void SurfaceLayers::recordLayer(gpu::CommandRecorder& recorder, const ViewRecord& view,
+                                std::span<const std::size_t> draws, std::uint32_t view_index, std::uint32_t layer) {
   const gpu::Image &depth = depths_[layer % 2], &before = depths_[1 - layer % 2];
   const bool peels = layer > 0;
   // The layers before stay, so only the first use of the array may discard what was in it.
   std::vector<Use> uses = buffers_.uses(
-      Access::kGraphicsRead, {Use(view_, Access::kGraphicsRead), Use(buffers_.positions(), Access::kVertexFetch),
-                              Use(buffers_.indices(), Access::kVertexFetch),
-                              Use(seen_, Access::kColorTarget, layer == 0), Use(depth, Access::kDepthTarget, true)});
+      Access::kGraphicsRead,
+      {Use(views_, Access::kGraphicsRead), Use(buffers_.positions(), Access::kVertexFetch),
+       Use(buffers_.indices(), Access::kVertexFetch), Use(seen_, Access::kColorTarget, view_index == 0 && layer == 0),
+       Use(depth, Access::kDepthTarget, true)});
   if (peels) uses.emplace_back(before, Access::kGraphicsRead);
   recorder.pass("layer", uses, [&](PassCommands& commands) {
-    commands.beginRendering({.colors = {{.image = seen_}}, .depth = &depth, .color_layer = layer});
+    commands.beginRendering(
+        {.colors = {{.image = seen_}}, .depth = &depth, .color_layer = view_index * layer_count_ + layer});
     commands.bind(peels ? next_ : first_);
-    std::vector<Bound> bound = buffers_.bound({Bound(7, view_)});
+    std::vector<Bound> bound = buffers_.bound({Bound(7, views_)});
     if (peels) bound.emplace_back(8, before, buffers_.sampler());
     commands.bindResources(bound);
+    commands.pushConstants(view_index);
     commands.bindVertexBuffer(buffers_.positions());
     commands.bindIndexBuffer(buffers_.indices());
     for (const std::size_t i : draws) {
       const SceneBuffers::Draw& draw = buffers_.draws()[i];
+      if (!mayShow(view, draw.bounds)) continue;
       commands.drawIndexed(draw.index_count, draw.first_index, draw.vertex_offset, 1, draw.instance);
     }
     commands.endRendering();

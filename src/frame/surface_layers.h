@@ -10,22 +10,27 @@
 
 namespace nephroid {
 
-/// Layer 0 is what the view shows; layer k is what it would show if the surfaces of the layers before were not there.
-/// Of surfaces that coincide one is kept. Device and buffers must outlive it.
+/// Layer 0 is what a view shows; layer k is what it would show if the surfaces of the layers before were not there. Of
+/// surfaces that coincide one is kept. Several views, as the faces of a cube, lie one behind the other in the arrays:
+/// view v has layers [v · layerCount(), (v + 1) · layerCount()). Device and buffers must outlive it.
 class SurfaceLayers {
  public:
   /// @param size    texels along a side
-  /// @param layers  >= 1
+  /// @param views   >= 1
+  /// @param layers  of each, >= 1
   /// @throws ResourceError
-  SurfaceLayers(gpu::Device& device, const SceneBuffers& buffers, std::uint32_t size, std::uint32_t layers);
+  SurfaceLayers(gpu::Device& device, const SceneBuffers& buffers, std::uint32_t size, std::uint32_t views,
+                std::uint32_t layers);
 
-  /// @param view   its picture is square
+  /// @param views  their pictures are square; as many as there is room for, or fewer
   /// @param draws  of the scene, by index
-  void record(gpu::CommandRecorder& recorder, const ViewRecord& view, std::span<const std::size_t> draws);
+  void record(gpu::CommandRecorder& recorder, std::span<const ViewRecord> views, std::span<const std::size_t> draws);
 
   std::uint32_t size() const { return seen_.desc().width; }
-  std::uint32_t count() const { return seen_.desc().layers; }
-  const gpu::Buffer& view() const { return view_; }
+  std::uint32_t viewCount() const { return view_count_; }
+  std::uint32_t layerCount() const { return layer_count_; }
+  /// ViewRecords.
+  const gpu::Buffer& views() const { return views_; }
   /// R32G32_UINT array: instance + 1 (0: nothing), triangle of its mesh.
   const gpu::Image& seen() const { return seen_; }
   /// RGBA32F array: place in the world, and the bits of packUnitVector of the normal that points out of the solid.
@@ -33,12 +38,15 @@ class SurfaceLayers {
   const gpu::Image& surfaces() const { return surfaces_; }
 
  private:
-  void recordLayer(gpu::CommandRecorder& recorder, std::span<const std::size_t> draws, std::uint32_t layer);
+  void recordLayer(gpu::CommandRecorder& recorder, const ViewRecord& view, std::span<const std::size_t> draws,
+                   std::uint32_t view_index, std::uint32_t layer);
 
   const SceneBuffers& buffers_;
   gpu::GraphicsPipeline first_, next_;
   gpu::ComputePipeline places_;
-  gpu::Buffer view_;
+  std::uint32_t view_count_ = 0;  ///< of those that were recorded last
+  std::uint32_t layer_count_;
+  gpu::Buffer views_;
   gpu::Image seen_, surfaces_;
   gpu::Image depths_[2];  ///< of the present layer and the one before, in turn
 };

@@ -6,18 +6,10 @@
 #define NEPHROID_TRIANGLE_TREE_GLSL
 
 #include "frame/tables.glsl"
-#include "frame/ray.glsl"
+#include "frame/path.glsl"
 
 layout(set = 0, binding = NEPHROID_TREE_BINDINGS) uniform usampler2D tree_node_table;
 layout(set = 0, binding = NEPHROID_TREE_BINDINGS + 1) uniform usampler2D tree_triangle_table;
-
-struct Met {
-  float t;  // kFarAway: nothing
-  float u;  // weights of the second and third corner
-  float v;
-  uint instance;  // kNowhere: nothing
-  uint triangle;
-};
 
 /// Weights of corners below zero by as much are on the triangle: else a ray may slip between two of them.
 const float kEdgeSlack = 1e-6;

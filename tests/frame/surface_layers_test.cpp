@@ -33,10 +33,10 @@ class SurfaceLayersTest : public testing::GpuTest {
     gpu::CommandRecorder recorder(device());
     recorder.begin();
     const SceneBuffers buffers(device(), recorder, scene, 0.25F);
-    SurfaceLayers layers(device(), buffers, kSize, count);
+    SurfaceLayers layers(device(), buffers, kSize, 1, count);
     std::vector<std::size_t> draws(buffers.draws().size());
     std::iota(draws.begin(), draws.end(), std::size_t{0});
-    layers.record(recorder, view, draws);
+    layers.record(recorder, std::span(&view, 1), draws);
     recorder.submit();
     Layers result;
     const std::vector<std::byte> seen = gpu::readBack(device(), layers.seen());

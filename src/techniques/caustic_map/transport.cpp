@@ -1,0 +1,75 @@
+#include "techniques/caustic_map/transport.h"
+
+#include "core/assert.h"
+#include "frame/passes.h"
+#include "shaders/techniques/transport.comp.h"
+
+namespace nephroid {
+namespace {
+
+/// Threads of a group along each side.
+constexpr std::uint32_t kGroup = 8;
+/// Two cubes of views.
+constexpr std::uint32_t kMostViews = 12;
+
+}  // namespace
+
+Transport::Transport(gpu::Device& device, const SceneBuffers& buffers)
+    : device_(device),
+      buffers_(buffers),
+      pipeline_(device,
+                {.shader = shaders::transport_comp,
+                 .bindings =
+                     SceneBuffers::bindings({kTable, kTable, kTexture, kTexture, kTexture, kTexture, kTexture, kTable}),
+                 .push_bytes = sizeof(TransportPush),
+                 .constants = buffers.traits().pathConstants()},
+                "transport"),
+      views_(device, kMostViews * sizeof(ViewRecord), VK_BUFFER_USAGE_STORAGE_BUFFER_BIT, gpu::MemoryIntent::kDevice,
+             "views of a light") {}
+
+void Transport::record(gpu::CommandRecorder& recorder, const LightPictures& pictures, const gpu::Buffer& lights,
+                       std::uint32_t light, std::uint32_t view, const TransportSettings& settings,
+                       const PhotonBuffer& photons) {
+  NEPHROID_ASSERT_LE(pictures.emission_views.size() + pictures.receiver_views.size(), std::size_t{kMostViews});
+  std::vector<ViewRecord> views(pictures.emission_views.begin(), pictures.emission_views.end());
+  views.insert(views.end(), pictures.receiver_views.begin(), pictures.receiver_views.end());
+  recorder.upload(views_, std::as_bytes(std::span(views)));
+  const TransportPush push{.grid = settings.grid,
+                           .light = light,
+                           .view = view,
+                           .branch = settings.branch,
+                           .max_events = settings.max_events,
+                           .specular_alpha = settings.specular_alpha,
+                           .offset = settings.offset,
+                           .generator_views = static_cast<std::uint32_t>(pictures.emission_views.size()),
+                           .generator_layers = pictures.generators.layerCount(),
+                           .receiver_views = static_cast<std::uint32_t>(pictures.receiver_views.size()),
+                           .generator_size = static_cast<float>(pictures.generators.size()),
+                           .receiver_size = static_cast<float>(pictures.receivers.size()),
+                           .iterations = settings.iterations,
+                           .generator_lower = pictures.generator_bounds.lower,
+                           .generator_upper = pictures.generator_bounds.upper,
+                           .scene_lower = pictures.scene_bounds.lower,
+                           .scene_upper = pictures.scene_bounds.upper};
+  const gpu::Buffer& target = photons.chunks()[0].buffer;
+  const std::vector<Use> uses = buffers_.uses(
+      Access::kComputeRead,
+      {Use(views_, Access::kComputeRead), Use(lights, Access::kComputeRead),
+       Use(pictures.first.seen(), Access::kComputeRead), Use(pictures.generators.seen(), Access::kComputeRead),
+       Use(pictures.generators.surfaces(), Access::kComputeRead), Use(pictures.receivers.seen(), Access::kComputeRead),
+       Use(pictures.receivers.surfaces(), Access::kComputeRead), Use(target, Access::kComputeWrite)});
+  recorder.pass("transport", uses, [&](PassCommands& commands) {
+    const gpu::Sampler& nearest = buffers_.sampler();
+    commands.bind(pipeline_);
+    commands.bindResources(buffers_.bound({Bound(7, views_), Bound(8, lights), Bound(9, pictures.first.seen(), nearest),
+                                           Bound(10, pictures.generators.seen(), nearest),
+                                           Bound(11, pictures.generators.surfaces(), nearest),
+                                           Bound(12, pictures.receivers.seen(), nearest),
+                                           Bound(13, pictures.receivers.surfaces(), nearest), Bound(14, target)}));
+    commands.pushConstants(push);
+    const std::uint32_t groups = gpu::groupsOf(settings.grid, kGroup);
+    commands.dispatch(groups, groups);
+  });
+}
+
+}  // namespace nephroid

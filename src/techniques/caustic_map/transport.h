@@ -1,0 +1,57 @@
+// From the light to where its photons end, in pictures that it takes ([shah-2007], §III-B to D).
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "frame/photon_buffer.h"
+#include "frame/scene_buffers.h"
+#include "frame/surface_layers.h"
+#include "gpu/commands.h"
+#include "techniques/caustic_map/transport.shared.h"
+
+namespace nephroid {
+
+/// The pictures that light is followed in.
+struct LightPictures {
+  std::span<const ViewRecord> emission_views;  ///< of makeEmissionViews
+  Bounds generator_bounds, scene_bounds;
+  std::span<const ViewRecord> receiver_views;  ///< of everything that light may reach
+  const SurfaceLayers& first;                  ///< what the emission's views show of all there is; one layer
+  const SurfaceLayers& generators;             ///< what they show of generators
+  const SurfaceLayers& receivers;              ///< what the others show of receivers; one layer
+};
+
+/// How light is followed.
+struct TransportSettings {
+  std::uint32_t grid = 256;  ///< cells along a side of each of the emission's views
+  vec2 offset{0.5F};         ///< of the photon in its cell, in [0, 1)²
+  std::uint32_t branch = 0;  ///< 0: reflected at the first surface; b >= 1: let in, and reflected b − 1 times inside
+  std::uint32_t max_events = 8;
+  std::uint32_t iterations = 8;  ///< to find where a ray meets a surface
+  float specular_alpha = kDefaultSpecularAlpha;
+};
+
+/// Not thread-safe. Device and buffers must outlive it.
+class Transport {
+ public:
+  /// @throws ResourceError
+  Transport(gpu::Device& device, const SceneBuffers& buffers);
+
+  /// Records one pass for a light and an emission view: a photon for each cell, row by row.
+  /// @param lights   LightRecords
+  /// @param light    of them
+  /// @param view     of the emission's
+  /// @param photons  of grid² photons at least, in one chunk
+  void record(gpu::CommandRecorder& recorder, const LightPictures& pictures, const gpu::Buffer& lights,
+              std::uint32_t light, std::uint32_t view, const TransportSettings& settings, const PhotonBuffer& photons);
+
+ private:
+  gpu::Device& device_;
+  const SceneBuffers& buffers_;
+  gpu::ComputePipeline pipeline_;
+  gpu::Buffer views_;
+};
+
+}  // namespace nephroid
