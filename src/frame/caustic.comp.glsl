@@ -6,6 +6,7 @@
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_scalar_block_layout : require
 #include "frame/passable.glsl"
+#include "frame/response.glsl"
 
 layout(local_size_x = 8, local_size_y = 8) in;
 layout(scalar, set = 0, binding = 7) readonly buffer Views { ViewRecord views[]; };
@@ -20,14 +21,6 @@ layout(push_constant, scalar) uniform Push {
   uint frame;
   float specular_alpha;
 };
-
-/// Of all lobes of class D, 1/sr, for light from `wi` seen from `wo`; both normals are on the side of the eye.
-vec3 respond(Surface s, MaterialPoint m, vec3 wo, vec3 wi) {
-  if (!kSceneHasMetal && !kSceneHasGloss) return evaluateBase(baseScale(m.optics), vec3(1.0), vec3(1.0));
-  vec3 tangent = perpendicularTo(s.shading), bitangent = cross(s.shading, tangent);
-  return evaluateReceiver(m.optics, vec3(dot(wo, tangent), dot(wo, bitangent), dot(wo, s.shading)),
-                          vec3(dot(wi, tangent), dot(wi, bitangent), dot(wi, s.shading)), specular_alpha);
-}
 
 void main() {
   ivec2 pixel = ivec2(gl_GlobalInvocationID.xy);
@@ -54,6 +47,6 @@ void main() {
   float squared = dot(from, from);
   vec3 wi = squared > 0.0 && dot(from, s.shading) > 0.0 ? from * inversesqrt(squared) : s.shading;
   imageStore(irradiance_sum, pixel, imageLoad(irradiance_sum, pixel) + vec4(irradiance, 0.0));
-  vec3 radiance = weight * respond(s, m, -ray.dir, wi) * irradiance;
+  vec3 radiance = weight * respond(s, m, -ray.dir, wi, specular_alpha) * irradiance;
   imageStore(caustic_image, pixel, imageLoad(caustic_image, pixel) + vec4(radiance, 0.0));
 }

@@ -8,7 +8,7 @@
 #ifndef NEPHROID_LIGHTS_GLSL
 #define NEPHROID_LIGHTS_GLSL
 
-#include "frame/material.glsl"
+#include "frame/response.glsl"
 #include "core/optics/lights.shared.h"
 #include "frame/cube.shared.h"
 
@@ -187,16 +187,7 @@ vec3 lightFrom(uint light_index, LightRecord light, Surface s, MaterialPoint m, 
   float cos_light = dot(arriving.dir, s.shading);
   if (cos_light <= 0.0 || dot(arriving.dir, s.geometric) <= 0.0) return vec3(0.0);
   if (max(arriving.irradiance.x, max(arriving.irradiance.y, arriving.irradiance.z)) <= 0.0) return vec3(0.0);
-  vec3 brdf;
-  if (kSceneHasMetal || kSceneHasGloss) {
-    vec3 across = abs(s.shading.y) < 0.9 ? vec3(0.0, 1.0, 0.0) : vec3(1.0, 0.0, 0.0);
-    vec3 tangent = normalize(cross(s.shading, across));
-    vec3 bitangent = cross(s.shading, tangent);
-    brdf = evaluateReceiver(m.optics, vec3(dot(wo, tangent), dot(wo, bitangent), dot(wo, s.shading)),
-                            vec3(dot(arriving.dir, tangent), dot(arriving.dir, bitangent), cos_light), specular_alpha);
-  } else {
-    brdf = evaluateBase(baseScale(m.optics), vec3(1.0), vec3(1.0));
-  }
+  vec3 brdf = respond(s, m, wo, arriving.dir, specular_alpha);
   Place place = Place(s.position + s.position_error * s.geometric, s.instance_index, s.triangle);
   return brdf * arriving.irradiance * cos_light * visibilityOf(light_index, light, place, arriving, s.position);
 }

@@ -317,7 +317,7 @@ TEST_F(RasterTest, FineMeshesAreForComputeAndCoarseOnesForHardware) {
   const auto split = [&](int width, int height, Rasteriser rasteriser) {
     const ViewRecord view =
         makeCameraView(makeCamera("eye", vec3(0, 1, 4), vec3(0), 0.6F), width, height, scene.bounds(), vec2(0.5F));
-    return splitDraws(view, buffers.draws(), static_cast<std::uint32_t>(width * height), rasteriser);
+    return splitDraws(view, buffers.draws(), static_cast<std::uint32_t>(width) * static_cast<std::uint32_t>(height), rasteriser);
   };
   EXPECT_EQ(split(640, 480, Rasteriser::kAuto).compute, std::vector<std::size_t>{1});
   EXPECT_EQ(split(640, 480, Rasteriser::kAuto).hardware, std::vector<std::size_t>{0});
