@@ -250,6 +250,13 @@ void Renderer::drawIrradiance(const Surfaces& surfaces, const Image& irradiance,
   targets.pop_back();
   for (const Image* target : targets) checkTarget(i.device, *target, "irradiance");
   if (settings.samples == 0) throw UsageError("irradiance takes at least one sample");
+  // Everything that may be refused is, before anything is recorded.
+  const gpu::Image to_irradiance = wrap(i.device, irradiance, VK_IMAGE_USAGE_TRANSFER_DST_BIT, "irradiance");
+  std::optional<gpu::Image> to_direction;
+  if (mean_direction)
+    to_direction = wrap(i.device, *mean_direction, VK_IMAGE_USAGE_TRANSFER_DST_BIT, "the mean direction");
+  const ForeignPicture picture{{toMatrix(surfaces.clip_from_world), surfaces.normals_are_coded}, depth, normal};
+  static_cast<void>(makeForeignView(picture.view, surfaces.depth.format));
   if (!i.irradiance || i.irradiance->irradiance.desc().width != irradiance.width ||
       i.irradiance->irradiance.desc().height != irradiance.height)
     i.irradiance = makeIrradianceImages(i.device, irradiance.width, irradiance.height);
@@ -257,7 +264,6 @@ void Renderer::drawIrradiance(const Surfaces& surfaces, const Image& irradiance,
   i.recorder.begin();
   clearIrradiance(i.recorder, *i.irradiance);
   i.recorder.submit();
-  const ForeignPicture picture{{toMatrix(surfaces.clip_from_world), surfaces.normals_are_coded}, depth, normal};
   const ForeignLight light{settings.direct, settings.caustic};
   const float weight = 1.0F / static_cast<float>(settings.samples);
   for (std::uint32_t s = 0; s < settings.samples; ++s)
@@ -265,13 +271,11 @@ void Renderer::drawIrradiance(const Surfaces& surfaces, const Image& irradiance,
   i.keepTimes();
 
   i.recorder.begin();
-  const gpu::Image wrapped = wrap(i.device, irradiance, VK_IMAGE_USAGE_TRANSFER_DST_BIT, "irradiance");
-  i.deliver(i.irradiance->irradiance, irradiance, wrapped);
+  i.deliver(i.irradiance->irradiance, irradiance, to_irradiance);
   if (mean_direction) {
     if (!i.mean_direction) i.mean_direction.emplace(i.device);
     i.mean_direction->record(i.recorder, i.irradiance->direction);
-    const gpu::Image to = wrap(i.device, *mean_direction, VK_IMAGE_USAGE_TRANSFER_DST_BIT, "the mean direction");
-    i.deliver(i.irradiance->direction, *mean_direction, to);
+    i.deliver(i.irradiance->direction, *mean_direction, *to_direction);
   }
   i.recorder.handOver(depth, surfaces.depth.layout);
   i.recorder.handOver(normal, surfaces.normal.layout);

@@ -29,16 +29,21 @@ CausticPass::CausticPass(gpu::Device& device, const SceneBuffers& buffers, const
     : buffers_(buffers),
       inputs_(inputs),
       specular_alpha_(specular_alpha),
-      target_(makeIrradianceImages(device, inputs.seen.desc().width, inputs.seen.desc().height)),
-      radiance_(makeSum(device, inputs.seen, "caustic")),
-      irradiance_(makeSum(device, inputs.seen, "irradiance of caustics")),
       pipeline_(
           device,
           {.shader = shaders::caustic_comp,
            .bindings = SceneBuffers::bindings({kTable, kTexture, kTexture, kTexture, kTexture, kStorage, kStorage}),
            .push_bytes = sizeof(CausticPush),
            .constants = buffers.traits().constants()},
-          "caustic") {}
+          "caustic") {
+  fitPicture(device);
+}
+
+void CausticPass::fitPicture(gpu::Device& device) {
+  target_ = makeIrradianceImages(device, inputs_.seen.desc().width, inputs_.seen.desc().height);
+  radiance_ = makeSum(device, inputs_.seen, "caustic");
+  irradiance_ = makeSum(device, inputs_.seen, "irradiance of caustics");
+}
 
 void CausticPass::record(gpu::CommandRecorder& recorder, std::uint32_t frame) {
   const std::vector<Use> uses = buffers_.uses(

@@ -20,6 +20,8 @@ class CausticPass {
   /// For pictures of the size of `inputs.seen`. @throws ResourceError
   CausticPass(gpu::Device& device, const SceneBuffers& buffers, const Inputs& inputs, float specular_alpha);
 
+  /// The frame's images have another size now. @throws ResourceError
+  void fitPicture(gpu::Device& device);
   /// Of one sample: cleared before a technique adds to it.
   const IrradianceImages& target() const { return target_; }
   /// Adds what the target holds to the sums.

@@ -32,8 +32,6 @@ DisplayPush describe(std::size_t layers, float weight, const std::optional<Frame
 
 DisplayPass::DisplayPass(gpu::Device& device, std::uint32_t width, std::uint32_t height)
     : sampler_(device, {.filter = VK_FILTER_NEAREST}, "layers"),
-      picture_(device, {.format = kFloat4, .width = width, .height = height, .usage = VK_IMAGE_USAGE_STORAGE_BIT},
-               "picture"),
       histogram_(makeWords(device, kHistogramCells, "histogram")),
       exposure_(makeWords(device, 1, "exposure")),
       compose_(device,
@@ -46,7 +44,14 @@ DisplayPass::DisplayPass(gpu::Device& device, std::uint32_t width, std::uint32_t
                {.shader = shaders::display_comp,
                 .bindings = {{0, kStorage}, {1, kTable}},
                 .push_bytes = sizeof(DisplayPush)},
-               "display") {}
+               "display") {
+  resize(device, width, height);
+}
+
+void DisplayPass::resize(gpu::Device& device, std::uint32_t width, std::uint32_t height) {
+  picture_ = gpu::Image(
+      device, {.format = kFloat4, .width = width, .height = height, .usage = VK_IMAGE_USAGE_STORAGE_BIT}, "picture");
+}
 
 void DisplayPass::record(gpu::CommandRecorder& recorder, std::span<const gpu::Image* const> layers, float weight,
                          const std::optional<FrameDisplay>& display) {

@@ -23,6 +23,8 @@ class DisplayPass {
   /// @throws ResourceError
   DisplayPass(gpu::Device& device, std::uint32_t width, std::uint32_t height);
 
+  /// @throws ResourceError
+  void resize(gpu::Device& device, std::uint32_t width, std::uint32_t height);
   /// Records the sum of up to four images, each times `weight`, into `picture`.
   /// @param display  how it is shown; empty: radiance as it is
   void record(gpu::CommandRecorder& recorder, std::span<const gpu::Image* const> layers, float weight,

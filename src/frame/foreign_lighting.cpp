@@ -11,9 +11,8 @@ ForeignLighting::ForeignLighting(gpu::Device& device, const SceneBuffers& buffer
       nothing_(device, {.format = VK_FORMAT_R32G32_UINT, .usage = VK_IMAGE_USAGE_SAMPLED_BIT}, "nothing seen") {}
 
 void ForeignLighting::record(gpu::CommandRecorder& recorder, const ForeignPicture& picture,
-                             const IrradianceImages& target, const ForeignLight& light, RealtimeTechnique* technique,
-                             std::uint32_t sample, float weight) {
-  const ForeignViewRecord view = makeForeignView(picture.view, picture.depth.desc().format);
+                             const ForeignViewRecord& view, const IrradianceImages& target, const ForeignLight& light,
+                             RealtimeTechnique* technique, std::uint32_t sample, float weight) {
   recorder.upload(view_, std::as_bytes(std::span(&view, 1)));
   const PixelSurfaces surfaces =
       PixelSurfaces::ofForeign(view_, picture.depth, picture.normal, nothing_, buffers_.sampler());

@@ -28,9 +28,12 @@ class ForeignLighting {
  public:
   ForeignLighting(gpu::Device& device, const SceneBuffers& buffers, const LightGrids& lights);
 
-  /// Adds one sample of the light to `target`, of the size of the picture. @param technique  null: no caustic
-  void record(gpu::CommandRecorder& recorder, const ForeignPicture& picture, const IrradianceImages& target,
-              const ForeignLight& light, RealtimeTechnique* technique, std::uint32_t sample, float weight);
+  /// Adds one sample of the light to `target`, of the size of the picture.
+  /// @param view       the picture's
+  /// @param technique  null: no caustic
+  void record(gpu::CommandRecorder& recorder, const ForeignPicture& picture, const ForeignViewRecord& view,
+              const IrradianceImages& target, const ForeignLight& light, RealtimeTechnique* technique,
+              std::uint32_t sample, float weight);
 
  private:
   gpu::Device& device_;

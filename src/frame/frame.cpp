@@ -196,9 +196,10 @@ void RealtimeFrame::resize(int width, int height) {
   recorder_.begin();
   makeTargets();
   recorder_.submit();
-  if (specular_) makeSpecular();
-  makeCaustic();
-  display_.reset();
+  // What is compiled stays.
+  if (specular_) specular_->fitPicture(device_);
+  if (caustic_) caustic_->fitPicture(device_);
+  if (display_) display_->resize(device_, seen_.desc().width, seen_.desc().height);
   reset();
 }
 
@@ -411,10 +412,12 @@ const gpu::Image& RealtimeFrame::compose(std::span<const std::string> layers,
 void RealtimeFrame::lightForeign(const ForeignPicture& picture, const IrradianceImages& target,
                                  const ForeignLight& light, std::uint32_t sample, float weight) {
   if (!foreign_) foreign_ = std::make_unique<ForeignLighting>(device_, *buffers_, *light_grids_);
+  // Refused before anything is recorded.
+  const ForeignViewRecord view = makeForeignView(picture.view, picture.depth.desc().format);
   times_.clear();
   light_grids_->update(recorder_, sample, times_);
   recorder_.begin();
-  foreign_->record(recorder_, picture, target, light, light.caustic ? technique_.get() : nullptr, sample, weight);
+  foreign_->record(recorder_, picture, view, target, light, light.caustic ? technique_.get() : nullptr, sample, weight);
   recorder_.submit();
   recorder_.wait();
   times_.insert(times_.end(), recorder_.passTimes().begin(), recorder_.passTimes().end());

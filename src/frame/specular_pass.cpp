@@ -58,7 +58,11 @@ SpecularPass::SpecularPass(gpu::Device& device, gpu::CommandRecorder& recorder, 
                .constants = constantsOf(buffers.traits(), lights)},
               "specular"),
       bands_(makeBandTable(device, recorder)) {
-  const gpu::ImageDesc& seen = inputs.seen.desc();
+  fitPicture(device);
+}
+
+void SpecularPass::fitPicture(gpu::Device& device) {
+  const gpu::ImageDesc& seen = inputs_.seen.desc();
   sum_ = gpu::Image(device,
                     {.format = kFloat4,
                      .width = seen.width,

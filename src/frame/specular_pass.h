@@ -32,6 +32,8 @@ class SpecularPass {
   SpecularPass(gpu::Device& device, gpu::CommandRecorder& recorder, const SceneBuffers& buffers, const Inputs& inputs,
                const std::vector<gpu::Constant>& lights, std::uint32_t max_events);
 
+  /// The frame's images have another size now. @throws ResourceError
+  void fitPicture(gpu::Device& device);
   /// Adds a sample to the sum, once the frame's visibility is drawn.
   void record(gpu::CommandRecorder& recorder, const SamplePush& sample);
   /// Sum over samples, W/m²/sr.

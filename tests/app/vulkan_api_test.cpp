@@ -253,6 +253,10 @@ TEST_F(VulkanApi, RefusesWithOneLineWhatCannotBe) {
   // A matrix of zeros.
   surfaces.normal.width = kWidth;
   EXPECT_THROW(renderer.drawIrradiance(surfaces, target), UsageError);
+  EXPECT_THROW(renderer.drawIrradiance(surfaces, {}), UsageError);
+  // And goes on; the image must outlive what is drawn to it.
+  renderer.drawPicture(target);
+  gpu::check(tools_.api().DeviceWaitIdle(tools_.handle()), "waiting");
 }
 
 TEST_F(VulkanApi, TellsWhatADeviceLacks) {
