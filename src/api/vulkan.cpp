@@ -157,6 +157,8 @@ struct Renderer::Impl {
     FrameSettings settings = makeFrameSettings(params);
     settings.width = width, settings.height = height;
     settings.seed = seed;
+    // Of the pictures that are asked for; irradiance does without.
+    settings.specular = specular;
     frame = std::make_unique<RealtimeFrame>(device, scene.data, camera, settings, factoryOf(technique, params));
     light_count = scene.data.lights.size();
   }
@@ -179,7 +181,8 @@ struct Renderer::Impl {
   std::uint32_t seed;
   SceneAccess::SceneImpl& scene;
   gpu::CommandRecorder recorder;
-  bool view = false;  ///< given by the caller
+  bool view = false;      ///< given by the caller
+  bool specular = false;  ///< some picture showed it
   Camera camera;
   int width = 1, height = 1;
   std::unique_ptr<RealtimeFrame> frame;
@@ -221,6 +224,10 @@ void Renderer::drawPicture(const Image& target, const PictureSettings& settings)
   if (static_cast<int>(target.width) != i.width || static_cast<int>(target.height) != i.height) {
     i.width = static_cast<int>(target.width), i.height = static_cast<int>(target.height);
     i.frame->resize(i.width, i.height);
+  }
+  if (!i.specular && std::ranges::find(layers, "specular") != layers.end()) {
+    i.specular = true;
+    i.frame->addSpecular();
   }
   for (std::uint32_t s = 0; s < settings.samples; ++s) i.frame->render(i.frame->samples());
   i.keepTimes();

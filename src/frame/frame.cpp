@@ -117,7 +117,7 @@ RealtimeFrame::RealtimeFrame(gpu::Device& device, const SceneData& scene, const 
   recorder_.submit();
   light_grids_ = std::make_unique<LightGrids>(device, scene, *buffers_, settings.shadow_size, settings.seed);
   makePasses();
-  if (settings.specular && settings.box_tree_builder && buffers_->traits().specular.present) makeSpecular();
+  if (settings.specular) makeSpecular();
   if (make_technique)
     technique_ = make_technique({device, scene, *buffers_, *light_grids_, settings.specular_alpha, settings.seed});
   makeCaustic();
@@ -155,6 +155,7 @@ std::vector<gpu::Constant> RealtimeFrame::lightConstants() const {
 
 void RealtimeFrame::makeSpecular() {
   specular_.reset();
+  if (!settings_.box_tree_builder || !buffers_->traits().specular.present) return;
   recorder_.begin();
   if (!tree_) tree_ = std::make_unique<TriangleTree>(device_, recorder_, scene_, settings_.box_tree_builder);
   const SpecularPass::Inputs inputs{camera_view_,         seen_,         tint_, lamps_, environment_,
@@ -184,6 +185,13 @@ void RealtimeFrame::uploadLamps() {
   const std::vector<LampRecord> lamps = makeLamps(scene_);
   lamp_count_ = static_cast<std::uint32_t>(lamps.size());
   lamps_ = makeTable<LampRecord>(device_, recorder_, lamps, "lamps");
+}
+
+void RealtimeFrame::addSpecular() {
+  if (settings_.specular) return;
+  settings_.specular = true;
+  makeSpecular();
+  reset();
 }
 
 void RealtimeFrame::setCamera(const Camera& camera) {

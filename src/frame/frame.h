@@ -48,6 +48,9 @@ class RealtimeFrame {
                 const MakeRealtimeTechnique& make_technique = {});
   ~RealtimeFrame();
 
+  /// As FrameSettings::specular, from now on: whoever learns late that he wants the layer. Starts the sums again.
+  /// @throws ResourceError
+  void addSpecular();
   void setCamera(const Camera& camera);
   /// @throws ResourceError
   void resize(int width, int height);

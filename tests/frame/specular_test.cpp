@@ -284,6 +284,24 @@ TEST_F(SpecularTest, CheckersAreSeenWhereTheReferenceSeesThem) {
   }
 }
 
+TEST_F(SpecularTest, MayBeAddedLate) {
+  SceneData scene;
+  test::addObject(scene, test::makeFloor(2.0), test::makeMetal(vec3(0.9F, 0.6F, 0.3F)));
+  test::addObject(scene, makeWall(), makeGlow(vec3(1, 2, 3)));
+  FrameSettings settings = makeSettings(16, 12);
+  RealtimeFrame whole(device(), scene, lookAslant(0.5F), settings);
+  whole.render(0);
+  settings.specular = false;
+  RealtimeFrame late(device(), scene, lookAslant(0.5F), settings);
+  late.render(0);
+  EXPECT_EQ(test::meanOf(late.readSummed("specular")), dvec3(0));
+  late.addSpecular();
+  late.render(0);
+  EXPECT_GT(test::meanOf(late.readSummed("specular")).x, 0.0);
+  EXPECT_EQ(late.readSummed("specular").pixels, whole.readSummed("specular").pixels);
+  EXPECT_EQ(late.readSummed("emission").pixels, whole.readSummed("emission").pixels);
+}
+
 TEST_F(SpecularTest, NothingIsSpecularWithoutABuilder) {
   SceneData scene;
   test::addObject(scene, test::makeFloor(2.0), test::makeMetal(vec3(0.9F, 0.6F, 0.3F)));
