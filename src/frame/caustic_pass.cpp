@@ -6,9 +6,6 @@
 namespace nephroid {
 namespace {
 
-/// Threads of a group along each side.
-constexpr std::uint32_t kGroup = 8;
-
 struct CausticPush {
   std::uint32_t frame;
   float specular_alpha;
@@ -59,7 +56,8 @@ void CausticPass::record(gpu::CommandRecorder& recorder, std::uint32_t frame) {
                         Bound(10, target_.irradiance, nearest), Bound(11, target_.direction, nearest),
                         Bound(12, radiance_), Bound(13, irradiance_)}));
     commands.pushConstants(CausticPush{frame, specular_alpha_});
-    commands.dispatch(gpu::groupsOf(radiance_.desc().width, kGroup), gpu::groupsOf(radiance_.desc().height, kGroup));
+    commands.dispatch(gpu::groupsOf(radiance_.desc().width, kPixelGroup),
+                      gpu::groupsOf(radiance_.desc().height, kPixelGroup));
   });
 }
 

@@ -6,8 +6,6 @@
 namespace nephroid {
 namespace {
 
-/// Threads of a group along each side.
-constexpr std::uint32_t kGroup = 8;
 constexpr std::uint32_t kPixelBindings = SceneBuffers::kBindings + LightGrids::kBindings;
 constexpr std::uint32_t kTargetBindings = kPixelBindings + PixelSurfaces::kBindings;
 
@@ -59,7 +57,8 @@ void DirectIrradiance::record(gpu::CommandRecorder& recorder, const RealtimeSamp
     sample.surfaces.appendBound(kPixelBindings, bound);
     commands.bindResources(bound);
     commands.pushConstants(DirectPush{lights_.lightCount(), sample.weight});
-    commands.dispatch(gpu::groupsOf(irradiance.desc().width, kGroup), gpu::groupsOf(irradiance.desc().height, kGroup));
+    commands.dispatch(gpu::groupsOf(irradiance.desc().width, kPixelGroup),
+                      gpu::groupsOf(irradiance.desc().height, kPixelGroup));
   });
 }
 

@@ -9,8 +9,6 @@
 namespace nephroid {
 namespace {
 
-/// Threads of a group along each side.
-constexpr std::uint32_t kGroup = 8;
 constexpr std::uint32_t kMostLayers = 4;
 
 gpu::Buffer makeWords(gpu::Device& device, std::uint32_t count, const char* name) {
@@ -58,8 +56,8 @@ void DisplayPass::record(gpu::CommandRecorder& recorder, std::span<const gpu::Im
   NEPHROID_ASSERT_LE(layers.size(), std::size_t{kMostLayers});
   NEPHROID_ASSERT_LE(std::size_t{1}, layers.size());
   const DisplayPush push = describe(layers.size(), weight, display);
-  const std::uint32_t groups_x = gpu::groupsOf(picture_.desc().width, kGroup);
-  const std::uint32_t groups_y = gpu::groupsOf(picture_.desc().height, kGroup);
+  const std::uint32_t groups_x = gpu::groupsOf(picture_.desc().width, kPixelGroup);
+  const std::uint32_t groups_y = gpu::groupsOf(picture_.desc().height, kPixelGroup);
   if (push.is_automatic != 0)
     recorder.pass("clear histogram", {Use(histogram_, Access::kTransferWrite)},
                   [&](PassCommands& commands) { commands.fill(histogram_, 0); });

@@ -29,7 +29,7 @@ NEPHROID_FN EmissionRay emissionRay(ViewRecord view, float film_x, float film_y)
 
 /// Flux that a light sends through a cell, W: I·ω of a point or a spot, E⊥·A of parallel light, A measured across it. The
 /// cosine to what it falls on is no factor: a cell is a beam, and how large its foot is does not change its flux. (Eq. 6
-/// of [shah-2007] has that factor; with a grid in the light's view it then counts twice.)
+/// of [shah-caustics-mapping] has that factor; with a grid in the light's view it then counts twice.)
 ///
 /// @param film_x, film_y  the cell's middle, in [-1, 1]
 /// @param cell_share      of the picture's area

@@ -26,8 +26,6 @@ namespace {
 
 constexpr VkFormat kSeenFormat = VK_FORMAT_R32G32_UINT;
 constexpr VkFormat kDepthFormat = VK_FORMAT_D32_SFLOAT;
-/// Threads of a group along each side, in every pass over pixels.
-constexpr std::uint32_t kGroup = 8;
 /// Stream of the sampler that places samples in pixels; the same place in all pixels of a frame.
 constexpr std::uint32_t kFilmStream = 0x0F110000U;
 
@@ -375,7 +373,7 @@ void RealtimeFrame::recordShade(const SamplePush& push) {
     bound.insert(bound.end(), of_lights.begin(), of_lights.end());
     commands.bindResources(bound);
     commands.pushConstants(push);
-    commands.dispatch(gpu::groupsOf(seen_.desc().width, kGroup), gpu::groupsOf(seen_.desc().height, kGroup));
+    commands.dispatch(gpu::groupsOf(seen_.desc().width, kPixelGroup), gpu::groupsOf(seen_.desc().height, kPixelGroup));
   });
 }
 
@@ -470,7 +468,7 @@ Image RealtimeFrame::readGeometry(const std::string& layer) {
     commands.bindResources(
         buffers_->bound({Bound(7, camera_view_), Bound(8, seen_, buffers_->sampler()), Bound(9, target)}));
     commands.pushConstants(kind);
-    commands.dispatch(gpu::groupsOf(seen_.desc().width, kGroup), gpu::groupsOf(seen_.desc().height, kGroup));
+    commands.dispatch(gpu::groupsOf(seen_.desc().width, kPixelGroup), gpu::groupsOf(seen_.desc().height, kPixelGroup));
   });
   recorder_.submit();
   return takeChannels(device_, target, kind >= 3 ? 1 : 3, 1.0F);

@@ -1,5 +1,6 @@
 #include "frame/mean_direction.h"
 
+#include "frame/passes.h"
 #include "shaders/frame/mean_direction.comp.h"
 
 namespace nephroid {
@@ -9,11 +10,11 @@ MeanDirection::MeanDirection(gpu::Device& device)
                 "mean direction") {}
 
 void MeanDirection::record(gpu::CommandRecorder& recorder, const gpu::Image& direction) {
-  constexpr std::uint32_t kGroup = 8;
   recorder.pass("mean direction", {gpu::Use(direction, gpu::Access::kComputeWrite)}, [&](gpu::PassCommands& commands) {
     commands.bind(pipeline_);
     commands.bindResources({gpu::Bound(0, direction)});
-    commands.dispatch(gpu::groupsOf(direction.desc().width, kGroup), gpu::groupsOf(direction.desc().height, kGroup));
+    commands.dispatch(gpu::groupsOf(direction.desc().width, kPixelGroup),
+                      gpu::groupsOf(direction.desc().height, kPixelGroup));
   });
 }
 

@@ -13,8 +13,6 @@ namespace {
 
 constexpr VkFormat kSeenFormat = VK_FORMAT_R32G32_UINT;
 constexpr VkFormat kDepthFormat = VK_FORMAT_D32_SFLOAT;
-/// Threads of a group along each side.
-constexpr std::uint32_t kGroup = 8;
 
 gpu::GraphicsPipeline makeDraw(gpu::Device& device, gpu::Spirv fragment, std::vector<gpu::Binding> bindings,
                                const SceneBuffers& buffers, const char* name) {
@@ -82,7 +80,7 @@ void SurfaceLayers::record(gpu::CommandRecorder& recorder, std::span<const ViewR
     commands.bindResources(
         buffers_.bound({Bound(7, views_), Bound(8, seen_, buffers_.sampler()), Bound(9, surfaces_)}));
     commands.pushConstants(layer_count_);
-    const std::uint32_t groups = gpu::groupsOf(size(), kGroup);
+    const std::uint32_t groups = gpu::groupsOf(size(), kPixelGroup);
     commands.dispatch(groups, groups, view_count_ * layer_count_);
   });
 }

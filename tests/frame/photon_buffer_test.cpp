@@ -47,7 +47,7 @@ TEST_F(PhotonBufferTest, IsCutWhereABufferWouldBeTooLarge) {
 }
 
 TEST_F(PhotonBufferTest, ARowThatNoBufferHoldsIsRefused) {
-  if (device().limits().maxStorageBufferRange / sizeof(Photon) >= 0xFFFFFFF0U) GTEST_SKIP() << "it would hold any";
+  // Vulkan counts a buffer's bytes in 32 bits here, so none holds as many photons.
   EXPECT_THROW(PhotonBuffer(device(), 0xFFFFFFF0U, 0xFFFFFFF0U), ResourceError);
 }
 

@@ -1,4 +1,4 @@
-// The pictures that a light takes of what bends it: the domain of emission (seed [shah-2007], §III-B).
+// The pictures that a light takes of what bends it: the domain of emission (seed [shah-caustics-mapping], §III-B).
 #pragma once
 
 #include <cstdint>

@@ -1,7 +1,7 @@
 // What a ray meets first among surfaces that are known as pictures: layers of views (frame/surface_layers.h).
 //
 // The places in a picture nearest to the ray are looked up one after the other, each by the plane of the one before:
-// Newton's method on the distance along the ray, as [shah-2007] §III-C does it with the distance alone. Where a surface
+// Newton's method on the distance along the ray, as [shah-caustics-mapping] §III-C does it with the distance alone. Where a surface
 // bends slowly against the size of a texel it converges within three or four steps, and then what is met is the very
 // triangle's plane, not what the picture was rounded to.
 #ifndef NEPHROID_LAYERED_VIEW_GLSL

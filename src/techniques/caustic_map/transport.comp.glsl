@@ -1,7 +1,7 @@
 // From the light to where its photons end: one thread a cell of the emission grid, one branch a dispatch.
 //
 // Emission, refraction at front and back faces, and the receiver, all in pictures that the light takes
-// ([shah-2007] §III-B to D). Photons stay in the order of the grid; those that end nowhere say why.
+// ([shah-caustics-mapping] §III-B to D). Photons stay in the order of the grid; those that end nowhere say why.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_scalar_block_layout : require
@@ -35,7 +35,7 @@ struct Flight {
 
 /// Goes on along the branch: reflected or let through at the first surface; inside, reflected so many times before it
 /// leaves. Where light is reflected totally there is no choice.
-Way chooseBranch(Flight flight, Way reflected, Way transmitted, uint events, bool is_inside) {
+Way chooseBranch(Way reflected, Way transmitted, uint events, bool is_inside) {
   if (events == 0u) return push.branch == 0u ? reflected : transmitted;
   bool can_leave = largest(transmitted.weight) > 0.0;
   if (!is_inside) return largest(reflected.weight) >= largest(transmitted.weight) ? reflected : transmitted;
@@ -58,7 +58,7 @@ void meetGenerator(inout Flight flight, Met met) {
   Way reflected = reflection(scattered, e.surface), transmitted = transmission(scattered, e.surface);
   // Of flux, not of radiance: it does not know the index.
   transmitted.weight /= radianceScale(optics);
-  Way way = chooseBranch(flight, reflected, transmitted, events, e.crossing.is_solid && !e.crossing.entering);
+  Way way = chooseBranch(reflected, transmitted, events, e.crossing.is_solid && !e.crossing.entering);
   flight.chain = hashChain(flight.chain, 2u * met.instance + (way.through ? 1u : 0u));
   take(flight.path, way, e.surface, e.crossing, false);
   if (largest(flight.path.throughput) <= 0.0) flight.outcome = events == 0u ? kOutcomeNoWay : kOutcomeAbsorbed;

@@ -7,16 +7,13 @@
 namespace nephroid {
 namespace {
 
-/// Threads of a group along each side.
-constexpr std::uint32_t kGroup = 8;
 /// Two cubes of views.
 constexpr std::uint32_t kMostViews = 12;
 
 }  // namespace
 
 Transport::Transport(gpu::Device& device, const SceneBuffers& buffers)
-    : device_(device),
-      buffers_(buffers),
+    : buffers_(buffers),
       pipeline_(device,
                 {.shader = shaders::transport_comp,
                  .bindings =
@@ -39,7 +36,6 @@ void Transport::record(gpu::CommandRecorder& recorder, const LightPictures& pict
                            .view = view,
                            .branch = settings.branch,
                            .max_events = settings.max_events,
-                           .specular_alpha = settings.specular_alpha,
                            .offset = settings.offset,
                            .generator_views = static_cast<std::uint32_t>(pictures.emission_views.size()),
                            .generator_layers = pictures.generators.layerCount(),
@@ -67,7 +63,7 @@ void Transport::record(gpu::CommandRecorder& recorder, const LightPictures& pict
                                            Bound(12, pictures.receivers.seen(), nearest),
                                            Bound(13, pictures.receivers.surfaces(), nearest), Bound(14, target)}));
     commands.pushConstants(push);
-    const std::uint32_t groups = gpu::groupsOf(settings.grid, kGroup);
+    const std::uint32_t groups = gpu::groupsOf(settings.grid, kPixelGroup);
     commands.dispatch(groups, groups);
   });
 }

@@ -1,4 +1,4 @@
-// From the light to where its photons end, in pictures that it takes ([shah-2007], §III-B to D).
+// From the light to where its photons end, in pictures that it takes ([shah-caustics-mapping], §III-B to D).
 #pragma once
 
 #include <cstdint>
@@ -30,7 +30,6 @@ struct TransportSettings {
   std::uint32_t branch = 0;  ///< 0: reflected at the first surface; b >= 1: let in, and reflected b − 1 times inside
   std::uint32_t max_events = 8;
   std::uint32_t iterations = 8;  ///< to find where a ray meets a surface
-  float specular_alpha = kDefaultSpecularAlpha;
 };
 
 /// Not thread-safe. Device and buffers must outlive it.
@@ -48,7 +47,6 @@ class Transport {
               std::uint32_t light, std::uint32_t view, const TransportSettings& settings, const PhotonBuffer& photons);
 
  private:
-  gpu::Device& device_;
   const SceneBuffers& buffers_;
   gpu::ComputePipeline pipeline_;
   gpu::Buffer views_;

@@ -24,7 +24,6 @@ struct TransportPush {
   uint view;         // of the emission, among those of the light
   uint branch;       // 0: reflected at the first surface; b >= 1: enters, and is reflected b - 1 times inside
   uint max_events;
-  float specular_alpha;
   vec2 offset;       // of the photon in its cell, in [0, 1)
   uint generator_views;
   uint generator_layers;
