@@ -38,6 +38,9 @@ class PixelSurfaces {
   std::uint32_t width() const { return (foreign_ ? depth_ : seen_)->desc().width; }
   std::uint32_t height() const { return (foreign_ ? depth_ : seen_)->desc().height; }
 
+  /// ViewRecord or ForeignViewRecord.
+  const gpu::Buffer& view() const { return *view_; }
+
   /// Of frame/pixel_surface.glsl: descriptors from binding `first` on, what is bound to them, what is read.
   static constexpr std::uint32_t kBindings = 5;
   static std::vector<VkDescriptorType> descriptorTypes();

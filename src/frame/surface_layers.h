@@ -27,6 +27,8 @@ class SurfaceLayers {
   void record(gpu::CommandRecorder& recorder, std::span<const ViewRecord> views, std::span<const std::size_t> draws);
 
   std::uint32_t size() const { return seen_.desc().width; }
+  /// Views that the arrays have layers for.
+  std::uint32_t roomForViews() const { return seen_.desc().layers / layer_count_; }
   std::uint32_t viewCount() const { return view_count_; }
   std::uint32_t layerCount() const { return layer_count_; }
   /// ViewRecords.
@@ -34,7 +36,7 @@ class SurfaceLayers {
   /// R32G32_UINT array: instance + 1 (0: nothing), triangle of its mesh.
   const gpu::Image& seen() const { return seen_; }
   /// RGBA32F array: place in the world, and the bits of packUnitVector of the normal that points out of the solid.
-  /// Where nothing is seen it is undefined.
+  /// Where nothing is seen it is too far away to be near anything.
   const gpu::Image& surfaces() const { return surfaces_; }
 
  private:

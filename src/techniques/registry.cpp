@@ -6,6 +6,7 @@
 #include "techniques/reference/reference.h"
 #include "techniques/technique.h"
 #ifdef NEPHROID_VULKAN
+#include "techniques/caustic_map/caustic_map.h"
 #include "techniques/none/none.h"
 #endif
 
@@ -16,6 +17,7 @@ std::span<const Technique> techniques() {
   static const Technique list[] = {
       makeReferenceTechnique(),
 #ifdef NEPHROID_VULKAN
+      makeCausticMapTechnique(),
       makeNoneTechnique(),
 #endif
   };

@@ -1,0 +1,28 @@
+// What the deposit of photons and C++ tell each other.
+#ifndef NEPHROID_DEPOSIT_SHARED_H
+#define NEPHROID_DEPOSIT_SHARED_H
+
+#include "core/optics/bridge.shared.h"
+
+NEPHROID_NAMESPACE_BEGIN
+
+/// Red, green, blue.
+NEPHROID_CONST uint kFluxChannels = 3u;
+/// In each coordinate, m, where a picture shows nothing: too far away to be near anything, and its square is a float.
+NEPHROID_CONST float kNoPlace = 1e18f;
+/// Texels along a side of what is remembered to hold flux or not.
+NEPHROID_CONST uint kDepositTile = 8u;
+
+struct DepositPush {
+  uint grid_width;  // photons in a row
+  uint grid_height;
+  uint width;  // texels of each view's picture
+  uint height;
+  float steps_per_watt;  // of the whole numbers
+  float splat_radius;    // texels
+  uint layer_count;      // of each view, in the images of surfaces; the first is what flux is deposited on
+};
+
+NEPHROID_NAMESPACE_END
+
+#endif

@@ -1,0 +1,20 @@
+// Place and normal of what each pixel shows: the surfaces that a picture of flux lies on.
+#version 460
+#extension GL_GOOGLE_include_directive : require
+#extension GL_EXT_scalar_block_layout : require
+#define NEPHROID_PIXEL_BINDINGS 7
+#include "frame/pixel_surface.glsl"
+#include "frame/deposit.shared.h"
+
+layout(local_size_x = 8, local_size_y = 8) in;
+layout(set = 0, binding = 12, rgba32f) writeonly uniform image2DArray surface_image;
+
+void main() {
+  ivec2 at = ivec2(gl_GlobalInvocationID.xy);
+  ivec2 size = imageSize(surface_image).xy;
+  if (at.x >= size.x || at.y >= size.y) return;
+  PixelSurface pixel;
+  vec4 value = vec4(vec3(kNoPlace), 0.0);
+  if (surfaceOfPixel(at, size, pixel)) value = vec4(pixel.position, uintBitsToFloat(packUnitVector(pixel.geometric)));
+  imageStore(surface_image, ivec3(at, 0), value);
+}

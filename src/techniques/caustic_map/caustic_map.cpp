@@ -1,0 +1,328 @@
+#include "techniques/caustic_map/caustic_map.h"
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+
+#include "core/sampling/sampler.h"
+#include "core/spectrum.h"
+#include "frame/emission.shared.h"
+#include "frame/surface_layers.h"
+#include "techniques/caustic_map/emission_views.h"
+#include "techniques/realtime/realtime_render.h"
+
+namespace nephroid {
+
+/// What one point or direction of light sees, and what is deposited there.
+struct CausticMap::Pictures {
+  std::vector<ViewRecord> emission;
+  gpu::Buffer light;  ///< a LightRecord
+  std::unique_ptr<SurfaceLayers> first, generators, receivers;
+  FluxMap map;
+};
+
+struct CausticMap::Source {
+  std::unique_ptr<Pictures> pictures;
+  bool is_new = true;  ///< what stays was not drawn yet
+};
+
+struct CausticMap::Point {
+  LightView view;
+  Source* source;
+  float most_flux;  ///< W
+  float weight;     ///< of all points of its source
+  bool is_new;      ///< its pictures are
+};
+
+namespace {
+
+/// Stream of the sampler for places in cells, far from those of lights.
+constexpr std::uint32_t kCellStream = 0xCA057000U;
+/// Cells along a side of a view over which its flux is added up to bound it, and by how much the sum may be too small.
+constexpr int kBoundCells = 32;
+constexpr float kBoundMargin = 1.02F;
+
+/// No less than what a light sends through its views, W, of the largest channel.
+float boundFlux(LightRecord light, const std::vector<ViewRecord>& views) {
+  // Of all directions and sides: what is cut out of that is less.
+  if (light.kind == kLightSpot) light.kind = kLightPoint;
+  light.surface = kSurfaceNone;
+  float sum = 0.0F;
+  for (const ViewRecord& view : views)
+    for (int y = 0; y < kBoundCells; ++y)
+      for (int x = 0; x < kBoundCells; ++x) {
+        const auto film = [](int i) { return (static_cast<float>(i) + 0.5F) * 2.0F / kBoundCells - 1.0F; };
+        const vec3 flux = cellFlux(light, view, film(x), film(y), 1.0F / (kBoundCells * kBoundCells));
+        sum += std::max({flux.x, flux.y, flux.z});
+      }
+  return kBoundMargin * sum;
+}
+
+std::uint32_t countOf(const std::vector<ViewRecord>& views) { return static_cast<std::uint32_t>(views.size()); }
+
+/// Layers of pictures for at least so many views.
+void makeRoom(std::unique_ptr<SurfaceLayers>& layers, const RealtimeInputs& inputs, std::uint32_t size,
+              std::uint32_t views, std::uint32_t count) {
+  if (layers && layers->roomForViews() >= views) return;
+  layers = std::make_unique<SurfaceLayers>(inputs.device, inputs.buffers, size, views, count);
+}
+
+}  // namespace
+
+CausticMap::CausticMap(const RealtimeInputs& inputs, const CausticMapSettings& settings)
+    : inputs_(inputs),
+      settings_(settings),
+      directions_(inputs.buffers.traits().gloss || inputs.buffers.traits().metal),
+      transport_(inputs.device, inputs.buffers),
+      photons_(inputs.device, settings.grid * settings.grid) {
+  photons_.batch = {.emitted_count = settings.grid * settings.grid,
+                    .grid_width = settings.grid,
+                    .grid_height = settings.grid,
+                    .band_count = 1};
+  makeSources();
+}
+
+CausticMap::~CausticMap() = default;
+
+void CausticMap::makeSources() {
+  const std::vector<SceneBuffers::Draw>& draws = inputs_.buffers.draws();
+  all_.clear(), generators_.clear(), receivers_.clear();
+  for (std::size_t i = 0; i < draws.size(); ++i) {
+    all_.push_back(i);
+    if (draws[i].generates) generators_.push_back(i);
+    if (draws[i].receives && !draws[i].generates) receivers_.push_back(i);
+  }
+  generator_bounds_ = generatorBounds(inputs_.scene, inputs_.specular_alpha);
+  scene_bounds_ = inputs_.scene.bounds();
+  lights_ = std::make_unique<LightViews>(inputs_.scene, inputs_.seed);
+  sources_.resize(lights_->count());
+  for (Source& source : sources_) source.is_new = true;
+}
+
+void CausticMap::lightChanged(std::size_t index) { sources_[index].is_new = true; }
+void CausticMap::objectsMoved() { makeSources(); }
+
+Deposit& CausticMap::deposit(std::uint32_t views) {
+  const std::size_t index = views > 1 ? 1 : 0;
+  if (deposits_.size() <= index) deposits_.resize(index + 1);
+  if (!deposits_[index])
+    deposits_[index] = std::make_unique<Deposit>(inputs_.device, settings_.reconstruction, views, directions_);
+  return *deposits_[index];
+}
+
+LookUp& CausticMap::lookUp(bool foreign, std::uint32_t views) {
+  const std::size_t index = (foreign ? 2U : 0U) + (views > 1 ? 1U : 0U);
+  if (look_ups_.size() <= index) look_ups_.resize(index + 1);
+  if (!look_ups_[index])
+    look_ups_[index] = std::make_unique<LookUp>(inputs_.device, inputs_.buffers, foreign, views, directions_);
+  return *look_ups_[index];
+}
+
+std::vector<CausticMap::Point> CausticMap::choosePoints(std::uint32_t sample) {
+  std::vector<Point> points;
+  for (std::size_t i = 0; i < sources_.size(); ++i) {
+    Source& source = sources_[i];
+    std::optional<LightView> view = lights_->make(i, sample);
+    if (!view) continue;
+    if (!view->varies) {
+      points.push_back({*view, &source, boundFlux(view->light, emissionViews(view->light)), 1.0F, source.is_new});
+      source.is_new = false;
+      continue;
+    }
+    const bool is_environment = i >= inputs_.scene.lights.size() && view->light.kind == kLightDirectional;
+    const std::uint32_t count = is_environment ? settings_.directions : settings_.points;
+    for (std::uint32_t k = 0; k < count; ++k) {
+      view = lights_->make(i, sample * count + k);
+      if (!view) continue;
+      points.push_back(
+          {*view, &source, boundFlux(view->light, emissionViews(view->light)), 1.0F / static_cast<float>(count), true});
+    }
+  }
+  return points;
+}
+
+std::vector<ViewRecord> CausticMap::emissionViews(const LightRecord& light) const {
+  return makeEmissionViews(light, generator_bounds_, scene_bounds_);
+}
+
+void CausticMap::record(gpu::CommandRecorder& recorder, const RealtimeSample& sample) {
+  if (generator_bounds_.empty()) return;
+  const std::vector<Point> points = choosePoints(sample.index);
+  // Somebody else's pictures say where their pixels are, but not the way back.
+  const bool into_pixels = settings_.target == DepositTarget::kCamera && !sample.surfaces.isForeign();
+  if (into_pixels) {
+    float most = 0.0F;
+    for (const Point& point : points) most += sample.weight * point.weight * point.most_flux;
+    if (!pixel_deposit_) pixel_deposit_ = std::make_unique<PixelDeposit>(inputs_.device, inputs_.buffers, directions_);
+    pixel_deposit_->begin(recorder, sample, most);
+  }
+  for (const Point& point : points) {
+    std::unique_ptr<Pictures>& pictures = point.source->pictures;
+    if (!pictures) pictures = std::make_unique<Pictures>();
+    if (point.is_new) recordPictures(recorder, point.view, *pictures);
+    if (pictures->emission.empty()) continue;
+    if (into_pixels) {
+      recordPhotons(recorder, sample, point, sample.weight * point.weight, pixel_deposit_->surfaces(sample), 1,
+                    pixel_deposit_->map());
+      continue;
+    }
+    const std::uint32_t views = point.view.light.view_count;
+    FluxMap& map = pictures->map;
+    if (!map.valid()) {
+      const std::uint32_t size = pictures->receivers->size();
+      map = FluxMap(inputs_.device, size, size, views, directions_);
+    }
+    map.clear(recorder, point.most_flux);
+    const DepositSurfaces surfaces{pictures->receivers->views(), pictures->receivers->surfaces(), 1};
+    recordPhotons(recorder, sample, point, 1.0F, surfaces, views, map);
+    lookUp(sample.surfaces.isForeign(), views).record(recorder, sample, sample.weight * point.weight, surfaces, map);
+  }
+  if (into_pixels) pixel_deposit_->finish(recorder, sample);
+}
+
+void CausticMap::recordPictures(gpu::CommandRecorder& recorder, const LightView& view, Pictures& pictures) {
+  pictures.emission = emissionViews(view.light);
+  if (pictures.emission.empty()) return;
+  if (!pictures.light.valid())
+    pictures.light = gpu::Buffer(inputs_.device, sizeof(LightRecord), VK_BUFFER_USAGE_STORAGE_BUFFER_BIT,
+                                 gpu::MemoryIntent::kDevice, "light of a caustic map");
+  recorder.upload(pictures.light, std::as_bytes(std::span(&view.light, 1)));
+  const std::uint32_t views = countOf(pictures.emission), map_views = view.light.view_count;
+  const std::uint32_t size = map_views > 1 ? settings_.map_size : settings_.sun_map_size;
+  makeRoom(pictures.first, inputs_, settings_.grid, views, 1);
+  makeRoom(pictures.generators, inputs_, settings_.grid, views, settings_.layers);
+  makeRoom(pictures.receivers, inputs_, size, map_views, 1);
+  pictures.first->record(recorder, pictures.emission, all_);
+  pictures.generators->record(recorder, pictures.emission, generators_);
+  pictures.receivers->record(recorder, view.views, receivers_);
+}
+
+void CausticMap::recordPhotons(gpu::CommandRecorder& recorder, const RealtimeSample& sample, const Point& point,
+                               float weight, const DepositSurfaces& surfaces, std::uint32_t map_views,
+                               const FluxMap& map) {
+  const Pictures& pictures = *point.source->pictures;
+  const LightPictures followed{pictures.emission, generator_bounds_,    scene_bounds_,      point.view.views,
+                               *pictures.first,   *pictures.generators, *pictures.receivers};
+  Sampler sampler(inputs_.seed, kCellStream, sample.index);
+  TransportSettings transport{.grid = settings_.grid,
+                              // The first sample is that of the cells' middles, as a single picture should be.
+                              .offset = sample.index == 0 ? vec2(0.5F) : sampler.next2D(),
+                              .max_events = settings_.max_events,
+                              .iterations = settings_.iterations};
+  for (std::uint32_t v = 0; v < countOf(pictures.emission); ++v)
+    for (transport.branch = 0; transport.branch <= 1 + settings_.internal_reflections; ++transport.branch) {
+      transport_.record(recorder, followed, pictures.light, 0, v, transport, photons_);
+      deposit(map_views).record(recorder, photons_, surfaces, weight, settings_.splat_radius, inputs_.buffers.sampler(),
+                                map);
+    }
+}
+
+namespace {
+
+std::vector<ParamSpec> makeParams() {
+  const CausticMapSettings defaults;
+  const auto number = [](std::uint32_t value) { return static_cast<int>(value); };
+  std::vector<ParamSpec> params = makeFrameParams();
+  const std::vector<ParamSpec> own{
+      {"grid",
+       number(defaults.grid),
+       8,
+       2048,
+       "cells",
+       "along a side of each picture that a light takes of what bends it; a photon a cell",
+       {}},
+      {"map-size",
+       number(defaults.map_size),
+       16,
+       2048,
+       "texels",
+       "along a side of each face of the cube map that the light of a point is deposited into",
+       {}},
+      {"sun-map-size",
+       number(defaults.sun_map_size),
+       16,
+       4096,
+       "texels",
+       "along a side of the map that parallel light is deposited into",
+       {}},
+      {"layers",
+       number(defaults.layers),
+       1,
+       16,
+       "",
+       "surfaces behind one another, as seen from the light, that light is followed through",
+       {}},
+      {"internal-reflections",
+       number(defaults.internal_reflections),
+       0,
+       8,
+       "",
+       "inside a solid that are followed before light leaves it",
+       {}},
+      {"iterations", number(defaults.iterations), 1, 64, "", "to find where a ray meets a surface", {}},
+      {"points", number(defaults.points), 1, 256, "", "that a light with a size is taken for, each sample", {}},
+      {"directions", number(defaults.directions), 1, 1024, "", "that the environment is taken for, each sample", {}},
+      {"reconstruct",
+       std::string("quads"),
+       0,
+       0,
+       "",
+       "how flux is spread: over the cells between photons, or each photon as a Gaussian splat",
+       {"quads", "splats"}},
+      {"target",
+       std::string("camera"),
+       0,
+       0,
+       "",
+       "the picture that photons are deposited into: the camera's own pixels, or a map in the light's view",
+       {"camera", "light"}},
+      {"splat-radius", defaults.splat_radius, 0.5, 32, "texels", "of a splat", {}},
+  };
+  params.insert(params.end(), own.begin(), own.end());
+  return params;
+}
+
+CausticMapSettings makeSettings(const ParamSet& params) {
+  const auto count = [&](const char* name) { return static_cast<std::uint32_t>(params.getInt(name)); };
+  CausticMapSettings settings;
+  settings.grid = count("grid");
+  settings.map_size = count("map-size");
+  settings.sun_map_size = count("sun-map-size");
+  settings.layers = count("layers");
+  settings.internal_reflections = count("internal-reflections");
+  settings.iterations = count("iterations");
+  settings.points = count("points");
+  settings.directions = count("directions");
+  if (params.getString("reconstruct") == "splats") settings.reconstruction = Reconstruction::kSplats;
+  if (params.getString("target") == "light") settings.target = DepositTarget::kLight;
+  settings.splat_radius = params.getFloat("splat-radius");
+  return settings;
+}
+
+std::unique_ptr<RealtimeTechnique> makeCausticMap(const RealtimeInputs& inputs, const ParamSet& params) {
+  if (generatorBounds(inputs.scene, inputs.specular_alpha).empty()) return nullptr;
+  return std::make_unique<CausticMap>(inputs, makeSettings(params));
+}
+
+RenderResult renderCausticMap(const SceneData& scene, const Camera& camera, const RenderSettings& settings,
+                              ProgressSink* progress, const StopToken* stop) {
+  return renderRealtime(findTechnique("caustic-map"), scene, camera, settings, progress, stop);
+}
+
+}  // namespace
+
+Technique makeCausticMapTechnique() {
+  Technique technique;
+  technique.name = "caustic-map";
+  technique.text =
+      "caustics in real time, on a Vulkan device: light is followed through glass, off metal and into water in the "
+      "pictures that it takes of the scene, and deposited into a map in its own view";
+  technique.source = "Shah, Konttinen, Pattanaik 2007";
+  technique.on_vulkan = true;
+  technique.params = makeParams();
+  technique.make_realtime = makeCausticMap;
+  technique.render = renderCausticMap;
+  return technique;
+}
+
+}  // namespace nephroid

@@ -1,0 +1,84 @@
+// Caustic maps: light followed in the pictures that it takes, deposited into the light's view
+// ([shah-caustics-mapping]).
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <vector>
+
+#include "frame/deposit.h"
+#include "frame/light_views.h"
+#include "frame/pixel_deposit.h"
+#include "frame/realtime_technique.h"
+#include "techniques/caustic_map/look_up.h"
+#include "techniques/caustic_map/transport.h"
+#include "techniques/technique.h"
+
+namespace nephroid {
+
+/// The picture that photons are deposited into.
+enum class DepositTarget : std::uint8_t {
+  kCamera,  ///< the pixels themselves: as sharp as they are, and made anew for each picture
+  kLight,   ///< a map in the light's view, or a cube map about it, which any surface can look up
+};
+
+struct CausticMapSettings {
+  std::uint32_t grid = 256;      ///< cells along a side of each of the emission's views
+  std::uint32_t map_size = 256;  ///< texels along a side of each face of a point's cube map
+  std::uint32_t sun_map_size = 1024;
+  std::uint32_t layers = 4;  ///< surfaces behind one another that light is followed through, from the light
+  std::uint32_t internal_reflections = 2;
+  std::uint32_t iterations = 8;   ///< to find where a ray meets a surface
+  std::uint32_t max_events = 8;   ///< of class S, on the way of a photon
+  std::uint32_t bands = 7;        ///< of wavelength, where a material disperses
+  std::uint32_t points = 4;       ///< that a light with a size is taken for, each sample
+  std::uint32_t directions = 16;  ///< likewise of the environment
+  Reconstruction reconstruction = Reconstruction::kQuads;
+  float splat_radius = 1.5F;  ///< texels
+  DepositTarget target = DepositTarget::kCamera;
+};
+
+/// One map for each light, or for each point of it, drawn and looked up in one sample.
+class CausticMap : public RealtimeTechnique {
+ public:
+  /// @throws ResourceError
+  CausticMap(const RealtimeInputs& inputs, const CausticMapSettings& settings);
+  ~CausticMap() override;
+
+  void record(gpu::CommandRecorder& recorder, const RealtimeSample& sample) override;
+  void lightChanged(std::size_t index) override;
+  void objectsMoved() override;
+
+ private:
+  struct Pictures;
+  /// What is followed in one sample of one source of light.
+  struct Source;
+  void makeSources();
+  /// A point or a direction of a source in one sample.
+  struct Point;
+  std::vector<Point> choosePoints(std::uint32_t sample);
+  std::vector<ViewRecord> emissionViews(const LightRecord& light) const;
+  void recordPictures(gpu::CommandRecorder& recorder, const LightView& view, Pictures& pictures);
+  /// From the light to `map`.
+  void recordPhotons(gpu::CommandRecorder& recorder, const RealtimeSample& sample, const Point& point, float weight,
+                     const DepositSurfaces& surfaces, std::uint32_t map_views, const FluxMap& map);
+  LookUp& lookUp(bool foreign, std::uint32_t views);
+  Deposit& deposit(std::uint32_t views);
+
+  RealtimeInputs inputs_;
+  CausticMapSettings settings_;
+  bool directions_;                                        ///< surfaces ask where light comes from
+  std::vector<std::size_t> all_, generators_, receivers_;  ///< of the scene's draws
+  Bounds generator_bounds_, scene_bounds_;
+  std::unique_ptr<LightViews> lights_;
+  Transport transport_;
+  PhotonBuffer photons_;
+  std::unique_ptr<PixelDeposit> pixel_deposit_;  ///< where pixels are deposited into
+  std::vector<std::unique_ptr<Deposit>> deposits_;
+  std::vector<std::unique_ptr<LookUp>> look_ups_;
+  std::vector<Source> sources_;
+};
+
+Technique makeCausticMapTechnique();
+
+}  // namespace nephroid
