@@ -31,7 +31,7 @@ class Deposit {
   /// @throws ResourceError
   Deposit(gpu::Device& device, Reconstruction reconstruction, std::uint32_t views, bool directions);
 
-  /// Records a pass that adds photons of a grid to the map. The flux of each stays what it is, whether it is spread
+  /// Records passes that add photons of a grid to the map. The flux of each stays what it is, whether it is spread
   /// over cells or splatted; where the picture shows another surface than the one that a photon ends on, or its other
   /// side, it goes to FluxMap::lost.
   /// @param photons        batch.grid_width × batch.grid_height, row by row, in one chunk
@@ -41,7 +41,9 @@ class Deposit {
               float weight, float splat_radius, const gpu::Sampler& nearest, const FluxMap& map);
 
  private:
-  gpu::ComputePipeline pipeline_;
+  gpu::Device& device_;
+  gpu::ComputePipeline cells_, rest_pass_;
+  gpu::Buffer rest_;  ///< cells that the first pass leaves to the second
 };
 
 }  // namespace nephroid

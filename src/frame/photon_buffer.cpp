@@ -9,7 +9,10 @@
 namespace nephroid {
 
 PhotonBuffer::PhotonBuffer(gpu::Device& device, std::uint32_t capacity, std::uint32_t align) : capacity_(capacity) {
-  std::uint64_t most = device.limits().maxStorageBufferRange / sizeof(Photon);
+  // Written as records, read as texels.
+  constexpr std::uint32_t kTexelsEach = sizeof(Photon) / 16;
+  std::uint64_t most = std::min<std::uint64_t>(device.limits().maxStorageBufferRange / sizeof(Photon),
+                                               device.limits().maxTexelBufferElements / kTexelsEach);
   most -= most % align;
   if (most == 0)
     throw ResourceError(
@@ -17,7 +20,8 @@ PhotonBuffer::PhotonBuffer(gpu::Device& device, std::uint32_t capacity, std::uin
   for (std::uint32_t first = 0; first < capacity; first += chunks_.back().count) {
     const auto count = static_cast<std::uint32_t>(std::min<std::uint64_t>(most, capacity - first));
     chunks_.push_back({first, count,
-                       gpu::Buffer(device, VkDeviceSize{count} * sizeof(Photon), VK_BUFFER_USAGE_STORAGE_BUFFER_BIT,
+                       gpu::Buffer(device, VkDeviceSize{count} * sizeof(Photon),
+                                   VK_BUFFER_USAGE_STORAGE_BUFFER_BIT | VK_BUFFER_USAGE_UNIFORM_TEXEL_BUFFER_BIT,
                                    gpu::MemoryIntent::kDevice, "photons")});
   }
 }

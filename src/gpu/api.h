@@ -67,6 +67,7 @@ namespace nephroid::gpu {
   X(CmdSetViewport)                     \
   X(CmdWriteTimestamp2)                 \
   X(CreateBuffer)                       \
+  X(CreateBufferView)                   \
   X(CreateCommandPool)                  \
   X(CreateComputePipelines)             \
   X(CreateDescriptorSetLayout)          \
@@ -80,6 +81,7 @@ namespace nephroid::gpu {
   X(CreateSemaphore)                    \
   X(CreateShaderModule)                 \
   X(DestroyBuffer)                      \
+  X(DestroyBufferView)                  \
   X(DestroyCommandPool)                 \
   X(DestroyDescriptorSetLayout)         \
   X(DestroyDevice)                      \

@@ -111,7 +111,9 @@ void PassCommands::bindResources(std::span<const Bound> resources) {
              .dstBinding = bound.binding,
              .descriptorCount = 1,
              .descriptorType = type};
-    if (bound.buffer) {
+    if (type == VK_DESCRIPTOR_TYPE_UNIFORM_TEXEL_BUFFER) {
+      write.pTexelBufferView = &bound.buffer->texelView();
+    } else if (bound.buffer) {
       buffers[i] = {bound.buffer->handle(), 0, VK_WHOLE_SIZE};
       write.pBufferInfo = &buffers[i];
     } else {

@@ -82,15 +82,29 @@ Buffer::Buffer(Device& device, VkDeviceSize size, VkBufferUsageFlags usage, Memo
     check(api.BindBufferMemory(device.handle(), handle_, allocation_.memory(), allocation_.offset()),
           fmt::format("binding the buffer '{}'", name));
     device.setName(VK_OBJECT_TYPE_BUFFER, bitsOf(handle_), name);
+    if ((usage & VK_BUFFER_USAGE_UNIFORM_TEXEL_BUFFER_BIT) != 0) makeTexelView(name);
   } catch (...) {
     api.DestroyBuffer(device.handle(), handle_, nullptr);
     throw;
   }
 }
 
+void Buffer::makeTexelView(std::string_view name) {
+  constexpr VkFormat kFormat = VK_FORMAT_R32G32B32A32_UINT;
+  const VkDeviceSize texels = size_ / texelBytes(kFormat);
+  if (texels > device_->limits().maxTexelBufferElements)
+    throw ResourceError(fmt::format("'{}' needs {} texels and {} lets a buffer have {}", name, texels, device_->name(),
+                                    device_->limits().maxTexelBufferElements));
+  const VkBufferViewCreateInfo info{
+      .sType = VK_STRUCTURE_TYPE_BUFFER_VIEW_CREATE_INFO, .buffer = handle_, .format = kFormat, .range = VK_WHOLE_SIZE};
+  check(device_->api().CreateBufferView(device_->handle(), &info, nullptr, &texel_view_),
+        fmt::format("creating a view of the buffer '{}'", name));
+}
+
 Buffer::~Buffer() {
   if (!handle_) return;
-  device_->retire([device = device_, handle = handle_, memory = share(std::move(allocation_))] {
+  device_->retire([device = device_, handle = handle_, view = texel_view_, memory = share(std::move(allocation_))] {
+    if (view) device->api().DestroyBufferView(device->handle(), view, nullptr);
     device->api().DestroyBuffer(device->handle(), handle, nullptr);
   });
 }
@@ -98,6 +112,7 @@ Buffer::~Buffer() {
 void Buffer::swap(Buffer& other) noexcept {
   std::swap(device_, other.device_);
   std::swap(handle_, other.handle_);
+  std::swap(texel_view_, other.texel_view_);
   std::swap(size_, other.size_);
   std::swap(allocation_, other.allocation_);
   std::swap(state_, other.state_);

@@ -27,7 +27,8 @@ class Buffer {
  public:
   Buffer() = default;
   /// @param size   bytes, > 0
-  /// @param usage  VK_BUFFER_USAGE_…; transfers both ways are always allowed
+  /// @param usage  VK_BUFFER_USAGE_…; transfers both ways are always allowed. As a uniform texel buffer shaders fetch it
+  ///               in texels of four words, which some devices do many times as fast as word by word
   /// @param name   for messages and captures
   /// @throws ResourceError
   Buffer(Device& device, VkDeviceSize size, VkBufferUsageFlags usage, MemoryIntent intent, std::string_view name);
@@ -41,6 +42,8 @@ class Buffer {
   bool valid() const { return handle_ != VK_NULL_HANDLE; }
   VkBuffer handle() const { return handle_; }
   VkDeviceSize size() const { return size_; }
+  /// Of all of it as texels; null unless its usage says so.
+  const VkBufferView& texelView() const { return texel_view_; }
   /// What the host sees; empty for MemoryIntent::kDevice.
   std::span<std::byte> mapped() const {
     return {allocation_.mapped(), allocation_.mapped() ? static_cast<std::size_t>(size_) : 0};
@@ -49,9 +52,11 @@ class Buffer {
 
  private:
   void swap(Buffer& other) noexcept;
+  void makeTexelView(std::string_view name);
 
   Device* device_ = nullptr;
   VkBuffer handle_ = VK_NULL_HANDLE;
+  VkBufferView texel_view_ = VK_NULL_HANDLE;
   VkDeviceSize size_ = 0;
   Allocation allocation_;
   mutable ResourceState state_;

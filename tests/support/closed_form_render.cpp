@@ -54,8 +54,9 @@ std::vector<double> PlanePicture::ringMeans(double radius, std::size_t rings, in
   return sums;
 }
 
-RenderResult renderLayers(const SceneData& scene, const Camera& camera, RenderSettings settings) {
-  const Technique& technique = findTechnique("reference");
+RenderResult renderLayers(const SceneData& scene, const Camera& camera, RenderSettings settings,
+                          std::string_view technique_name) {
+  const Technique& technique = findTechnique(technique_name);
   if (settings.params.specs().empty()) settings.params = ParamSet(technique.params);
   return technique.render(scene, camera, settings, nullptr, nullptr);
 }
@@ -63,16 +64,21 @@ RenderResult renderLayers(const SceneData& scene, const Camera& camera, RenderSe
 PlanePicture renderPlane(const SceneData& scene, const PlaneView& view, std::uint64_t photons, std::uint64_t seed,
                          const std::vector<std::string>& settings) {
   RenderSettings render;
-  render.width = view.columns, render.height = view.rows;
-  render.layers = {"irradiance_caustic"};
   render.photons = photons;
   render.seed = seed;
-  render.params = ParamSet(findTechnique("reference").params);
+  return renderPlane(scene, view, "reference", std::move(render), settings);
+}
+
+PlanePicture renderPlane(const SceneData& scene, const PlaneView& view, std::string_view technique,
+                         RenderSettings render, const std::vector<std::string>& settings) {
+  render.width = view.columns, render.height = view.rows;
+  render.layers = {"irradiance_caustic"};
+  render.params = ParamSet(findTechnique(technique).params);
   for (const std::string& setting : settings) {
     const std::size_t mark = setting.find('=');
     render.params.set(setting.substr(0, mark), setting.substr(mark + 1));
   }
-  RenderResult result = renderLayers(scene, view.camera(), std::move(render));
+  RenderResult result = renderLayers(scene, view.camera(), std::move(render), technique);
   return {view, *result.image.find("irradiance_caustic"), std::move(result.ledgers), std::move(result.stats)};
 }
 

@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "core/image/image.h"
@@ -49,8 +50,13 @@ struct PlanePicture {
 PlanePicture renderPlane(const SceneData& scene, const PlaneView& view, std::uint64_t photons, std::uint64_t seed = 1,
                          const std::vector<std::string>& settings = {});
 
+/// Likewise by any technique. @param render  budgets, seed, device
+PlanePicture renderPlane(const SceneData& scene, const PlaneView& view, std::string_view technique,
+                         RenderSettings render, const std::vector<std::string>& settings = {});
+
 /// Any layers from the eye and the lights.
-RenderResult renderLayers(const SceneData& scene, const Camera& camera, RenderSettings settings);
+RenderResult renderLayers(const SceneData& scene, const Camera& camera, RenderSettings settings,
+                          std::string_view technique = "reference");
 
 /// The worst of the ledgers' residuals: everything emitted is found again if it is at most 1e-5.
 double worstResidual(const std::vector<Ledger>& ledgers);

@@ -1,0 +1,262 @@
+// Photons of a grid into a picture of flux: what the passes over its cells share.
+//
+// A cell between four photons is two triangles of half the flux each, and each texel gets the share of a triangle's area
+// that lies in it, exactly: so neighbours that fill a plane evenly give an even picture, folded cells count on both sides
+// of the fold, and no flux falls between texels however small a cell becomes. ([shah-caustics-mapping] §III-B splats
+// points; §III-F.)
+#ifndef NEPHROID_DEPOSIT_GLSL
+#define NEPHROID_DEPOSIT_GLSL
+
+#define NEPHROID_PHOTON_BINDING 0
+#include "frame/fetch_photon.glsl"
+#include "frame/deposit.shared.h"
+#include "frame/frame.shared.h"
+
+layout(scalar, set = 0, binding = 1) readonly buffer Views { ViewRecord views[]; };
+layout(constant_id = 2) const uint kViewCount = 1u;
+#include "frame/texel_surface.glsl"
+layout(set = 0, binding = 2) uniform sampler2DArray surfaces;
+layout(set = 0, binding = 3, r32i) uniform iimage2DArray flux_image;
+layout(set = 0, binding = 4, r32ui) writeonly uniform uimage2DArray tile_image;
+layout(scalar, set = 0, binding = 5) buffer Lost { int lost_steps[]; };
+layout(scalar, set = 0, binding = 6) buffer Rest {
+  uint rest_count;
+  uint rest[];  // cells that the pass over all of them leaves to the next, by number
+};
+
+layout(constant_id = 0) const bool kMakesQuads = true;
+layout(constant_id = 1) const bool kKeepsDirections = false;
+
+layout(push_constant, scalar) uniform Push { DepositPush push; };
+
+const uint kChannels = kKeepsDirections ? 2u * kFluxChannels : kFluxChannels;
+
+/// Cells whose corners' directions differ from their mean by more than this are torn: an edge of the glass lies between.
+const float kLeastCosine = 0.93;
+/// Triangles smaller than this, in texels, are points: their area has no digits left.
+const float kLeastArea = 1e-3;
+/// Corners of a cell from its first photon on, once around.
+const ivec2 kCorners[4] = ivec2[4](ivec2(0, 0), ivec2(1, 0), ivec2(1, 1), ivec2(0, 1));
+
+float luminanceOf(vec3 rgb) { return dot(rgb, vec3(0.2126, 0.7152, 0.0722)); }
+
+/// What is deposited.
+struct Light {
+  vec3 flux;       // W
+  vec3 direction;  // unit, of travel
+};
+
+/// Rounds up or down by chance, so that the mean is kept where a texel gets less than a step.
+int toSteps(float steps, uint random) {
+  return int(floor(steps + float(random >> 8) * (1.0 / 16777216.0)));
+}
+
+/// @param salt  of what is deposited
+void addToTexel(ivec2 texel, uint view, Light light, float share, uint salt, bool is_kept) {
+  uint random = mixBits(uint(texel.x) + (uint(texel.y) << 12) + salt * 0x9e3779b1u);
+  vec3 steps = light.flux * (share * push.steps_per_watt);
+  ivec3 whole = ivec3(toSteps(steps.x, random), toSteps(steps.y, random), toSteps(steps.z, random));
+  if (!is_kept) {
+    for (uint c = 0u; c < 3u; ++c) atomicAdd(lost_steps[c], whole[c]);
+    return;
+  }
+  int layer = int(view * kChannels);
+  imageAtomicAdd(flux_image, ivec3(texel, layer), whole.x);
+  imageAtomicAdd(flux_image, ivec3(texel, layer + 1), whole.y);
+  imageAtomicAdd(flux_image, ivec3(texel, layer + 2), whole.z);
+  if (kKeepsDirections) {
+    vec3 along = light.direction * luminanceOf(steps);
+    for (int c = 0; c < 3; ++c)
+      imageAtomicAdd(flux_image, ivec3(texel, layer + 3 + c), toSteps(along[c], mixBits(random + uint(c))));
+  }
+  imageStore(tile_image, ivec3(texel / int(kDepositTile), view), uvec4(1u));
+}
+
+TexelSurface fetchTexel(ivec2 texel, uint view) {
+  return describeTexel(texelFetch(surfaces, ivec3(texel, view * push.layer_count), 0));
+}
+
+/// An edge of a polygon, from a to b, and how x changes with y along it.
+struct Edge {
+  vec2 a;
+  vec2 b;
+  float slope;
+};
+
+Edge makeEdge(vec2 a, vec2 b) {
+  float dy = b.y - a.y;
+  return Edge(a, b, dy != 0.0 ? (b.x - a.x) / dy : 0.0);
+}
+
+/// ∫ clamp(x, 0, 1) dy along the part of an edge with y in [0, 1], seen from a texel's corner: by Green's theorem the sum
+/// over a polygon's edges is the signed area of the polygon in that texel.
+float areaUnder(Edge e, vec2 corner) {
+  float y0 = clamp(e.a.y - corner.y, 0.0, 1.0), y1 = clamp(e.b.y - corner.y, 0.0, 1.0);
+  float ax = e.a.x - corner.x, ay = e.a.y - corner.y;
+  float x0 = ax + (y0 - ay) * e.slope, x1 = ax + (y1 - ay) * e.slope;
+  float c0 = clamp(x0, 0.0, 1.0), c1 = clamp(x1, 0.0, 1.0), dx = x1 - x0;
+  // ∫ clamp over a stretch of x is c (x − c/2).
+  float mean = abs(dx) > 4e-3 ? (c1 * (x1 - 0.5 * c1) - c0 * (x0 - 0.5 * c0)) / dx : clamp(0.5 * (x0 + x1), 0.0, 1.0);
+  return mean * (y1 - y0);
+}
+
+float crossOf(vec2 a, vec2 b) { return a.x * b.y - a.y * b.x; }
+
+/// Where a cell is on a view's picture.
+struct CellOnPicture {
+  vec2 corners[4];
+  vec2 lower;  // of the box about it
+  vec2 upper;
+  float least_w;
+  float most_w;
+};
+
+CellOnPicture cellOnPicture(vec3 places[4], uint view) {
+  Projection projection = projectionOf(view);
+  CellOnPicture cell;
+  for (uint k = 0u; k < 4u; ++k) {
+    OnPicture on = onPicture(projection, places[k], vec2(push.width, push.height));
+    cell.corners[k] = on.texels;
+    cell.lower = k == 0u ? on.texels : min(cell.lower, on.texels);
+    cell.upper = k == 0u ? on.texels : max(cell.upper, on.texels);
+    cell.least_w = k == 0u ? on.w : min(cell.least_w, on.w);
+    cell.most_w = k == 0u ? on.w : max(cell.most_w, on.w);
+  }
+  return cell;
+}
+
+/// Whether some of it may be shown.
+bool mayBeSeen(CellOnPicture cell) {
+  return cell.least_w > 1e-6 * cell.most_w && all(greaterThan(cell.upper, vec2(0.0))) &&
+         all(lessThan(cell.lower, vec2(push.width, push.height)));
+}
+
+/// Boxes of more texels are left to the second pass, where many threads share a cell.
+const float kLargeBox = 100.0;
+
+/// What of a cell lies in which texel.
+struct Coverage {
+  vec2 origin;  // all other places are seen from there: near it floats have more digits
+  vec2 first;   // of the texels
+  vec2 end;
+  Edge ab;
+  Edge bc;
+  Edge ca;
+  Edge cd;
+  Edge da;
+  float share_1;  // over the signed area of each triangle; 0 of a point
+  float share_2;
+  vec2 point_1;
+  vec2 point_2;
+  float point_share_1;
+  float point_share_2;
+};
+
+Coverage coverageOf(CellOnPicture cell) {
+  Coverage k;
+  k.origin = floor(cell.lower);
+  k.first = max(vec2(0.0), -k.origin);
+  k.end = min(cell.upper, vec2(push.width, push.height)) - k.origin;
+  vec2 a = cell.corners[0] - k.origin, b = cell.corners[1] - k.origin, c = cell.corners[2] - k.origin,
+       d = cell.corners[3] - k.origin;
+  k.ab = makeEdge(a, b);
+  k.bc = makeEdge(b, c);
+  k.ca = makeEdge(c, a);
+  k.cd = makeEdge(c, d);
+  k.da = makeEdge(d, a);
+  float area_1 = 0.5 * crossOf(b - a, c - a), area_2 = 0.5 * crossOf(c - a, d - a);
+  bool is_point_1 = abs(area_1) < kLeastArea, is_point_2 = abs(area_2) < kLeastArea;
+  k.point_1 = floor((a + b + c) / 3.0);
+  k.point_2 = floor((a + c + d) / 3.0);
+  k.share_1 = is_point_1 ? 0.0 : 0.5 / area_1;
+  k.share_2 = is_point_2 ? 0.0 : 0.5 / area_2;
+  k.point_share_1 = is_point_1 ? 0.5 : 0.0;
+  k.point_share_2 = is_point_2 ? 0.5 : 0.0;
+  return k;
+}
+
+float countTexels(Coverage k) {
+  vec2 size = ceil(k.end - k.first);
+  return size.x * size.y;
+}
+
+/// Share of the cell's flux in the texel whose corner lies at `at`.
+float shareIn(Coverage k, vec2 at) {
+  float diagonal = areaUnder(k.ca, at);
+  float in_1 = areaUnder(k.ab, at) + areaUnder(k.bc, at) + diagonal;
+  float in_2 = areaUnder(k.cd, at) + areaUnder(k.da, at) - diagonal;
+  return max(in_1 * k.share_1, 0.0) + max(in_2 * k.share_2, 0.0) + (at == k.point_1 ? k.point_share_1 : 0.0) +
+         (at == k.point_2 ? k.point_share_2 : 0.0);
+}
+
+/// Places that a cell spans, and how far off their planes its texels may lie.
+struct Span {
+  vec3 first;
+  vec3 third;
+  float reach;
+};
+
+Span spanOf(CellOnPicture cell, vec3 places[4]) {
+  return Span(places[0], places[2],
+              texelSize(cell.most_w, vec2(push.width, push.height)) + 0.25 * length(places[2] - places[0]));
+}
+
+void addShare(Coverage k, vec2 at, uint view, Span span, Light light, uint salt) {
+  float share = shareIn(k, at);
+  if (share <= 0.0) return;
+  ivec2 texel = ivec2(k.origin + at);
+  TexelSurface s = fetchTexel(texel, view);
+  bool is_on = liesOn(s, span.first, span.reach) || liesOn(s, span.third, span.reach);
+  addToTexel(texel, view, light, share, salt, is_on && dot(light.direction, s.lit_normal) < 0.0);
+}
+
+bool isPhoton(ivec2 at) {
+  return min(at.x, at.y) >= 0 && at.x < int(push.grid_width) && at.y < int(push.grid_height);
+}
+uint indexOf(ivec2 at) { return uint(at.y) * push.grid_width + uint(at.x); }
+
+/// The photons about a cell; the outermost cells have some on one side only.
+struct Cell {
+  vec3 places[4];
+  vec3 flux[4];
+  vec3 directions[4];
+  uint valid;     // bit k: corner k is a photon that ended on a receiver
+  bool is_whole;  // and all four took the same way
+};
+
+/// @param first  of its corners; from (-1, -1) on
+Cell fetchCell(ivec2 first) {
+  Cell cell;
+  cell.valid = 0u;
+  cell.is_whole = true;
+  uint chain = 0u;
+  vec3 sum = vec3(0.0);
+  for (uint k = 0u; k < 4u; ++k) {
+    ivec2 at = first + kCorners[k];
+    bool is_photon = isPhoton(at);
+    Photon photon = fetchPhoton(is_photon ? indexOf(at) : 0u);
+    bool is_valid = is_photon && (photon.light_band_flags & kPhotonValid) != 0u;
+    if (k == 0u) chain = photon.chain;
+    cell.is_whole = cell.is_whole && is_valid && photon.chain == chain;
+    cell.valid |= is_valid ? 1u << k : 0u;
+    cell.places[k] = photon.position;
+    cell.flux[k] = photon.flux;
+    cell.directions[k] = photon.direction;
+    sum += photon.direction;
+  }
+  vec3 mean = normalize(sum);
+  for (uint k = 0u; k < 4u; ++k) cell.is_whole = cell.is_whole && dot(cell.directions[k], mean) >= kLeastCosine;
+  return cell;
+}
+
+/// A quarter of each corner's flux.
+Light lightOf(Cell cell) {
+  vec3 flux = 0.25 * (cell.flux[0] + cell.flux[1] + cell.flux[2] + cell.flux[3]);
+  return Light(flux,
+               normalize(cell.directions[0] + cell.directions[1] + cell.directions[2] + cell.directions[3]));
+}
+
+/// Cells along a side of the grid: one more than photons.
+uint cellsAcross() { return push.grid_width + 1u; }
+
+#endif

@@ -1,0 +1,81 @@
+// Closed forms drawn by caustic maps: the same formulas, scenes and views as for the reference.
+#include <gtest/gtest.h>
+
+#include <numeric>
+
+#include "closed_form/ball.h"
+#include "closed_form/ring.h"
+#include "closed_form/slab.h"
+#include "closed_form/wave.h"
+
+namespace nephroid::closed_form {
+namespace {
+
+/// One frame, with a photon in the middle of each cell.
+PlanePicture drawPlane(const SceneData& scene, const PlaneView& view, const std::vector<std::string>& settings = {}) {
+  std::vector<std::string> all{"grid=512"};
+  all.insert(all.end(), settings.begin(), settings.end());
+  return renderPlane(scene, view, "caustic-map", {.samples = 1}, all);
+}
+
+void report(const char* name, double value) { ::testing::Test::RecordProperty(name, fmt::format("{:.6f}", value)); }
+
+TEST(CausticMapClosedForm, ASlabShiftsAndDims) {
+  for (const double angle_deg : {0.0, 30.0, 60.0}) {
+    const SlabCase c{.angle_deg = angle_deg};
+    PlaneView view = slabView(c);
+    view.columns = 512, view.rows = 32;
+    view.width *= 0.5;
+    const PlanePicture picture = drawPlane(makeSlabScene(c), view);
+    const double error = relativeL1(picture.columnMeans(), std::vector<double>(512, slabIrradiance(c).x));
+    report("relative_l1", error);
+    EXPECT_LE(error, 0.005) << angle_deg;
+  }
+}
+
+TEST(CausticMapClosedForm, AColouredSlabAbsorbsAlongTheBentPath) {
+  const SlabCase c{.angle_deg = 45.0, .color = dvec3(0.9, 0.5, 0.15)};
+  const PlanePicture picture = drawPlane(makeSlabScene(c), slabView(c));
+  for (int channel = 0; channel < 3; ++channel)
+    EXPECT_NEAR(meanIrradiance(picture)[channel] / slabIrradiance(c)[channel], 1.0, 0.02) << channel;
+}
+
+TEST(CausticMapClosedForm, ABallDrawsItsRadialProfile) {
+  for (const BallCase& c : {BallCase{.gap = 0.015, .view_radius = 0.03}, BallCase{.gap = 0.05, .view_radius = 0.1}}) {
+    const PlanePicture picture = drawPlane(makeBallScene(c, 1024), ballView(c, 1024));
+    const double error = relativeL1(picture.ringMeans(c.view_radius, 512), ballIrradiance(c, 512));
+    report("relative_l1", error);
+    EXPECT_LE(error, 0.06) << c.gap;
+  }
+}
+
+TEST(CausticMapClosedForm, AWaveDrawsItsFolds) {
+  for (const double depth : {0.5, 2.0}) {
+    const WaveCase c{.depth = depth};
+    const PlanePicture picture = drawPlane(makeWaveScene(c, 512), waveView(c));
+    const std::vector<double> drawn = picture.columnMeans(), predicted = waveIrradiance(c, 512);
+    const double error = relativeL1(drawn, predicted);
+    report("relative_l1", error);
+    EXPECT_LE(error, 0.08) << depth;
+    const auto sum = [](const std::vector<double>& v) { return std::accumulate(v.begin(), v.end(), 0.0); };
+    EXPECT_NEAR(sum(drawn) / sum(predicted), 1.0, 0.02) << depth;
+  }
+}
+
+TEST(CausticMapClosedForm, ARingDrawsTheNephroid) {
+  const RingCase c;
+  const PlanePicture picture = drawPlane(makeRingScene(c, 2048), ringView(c, 512));
+  const Image predicted = ringIrradiance(c, 512);
+  std::vector<double> row(512), expected(512);
+  for (int x = 0; x < 512; ++x)
+    for (int y = 240; y < 272; ++y) {
+      row[static_cast<std::size_t>(x)] += static_cast<double>(picture.irradiance.at(x, y)[0]) / 32;
+      expected[static_cast<std::size_t>(x)] += static_cast<double>(predicted.at(x, y)[0]) / 32;
+    }
+  const double error = relativeL1(row, expected);
+  report("relative_l1", error);
+  EXPECT_LE(error, 0.08);
+}
+
+}  // namespace
+}  // namespace nephroid::closed_form
