@@ -1,0 +1,216 @@
+#include "frame/deposit.h"
+
+#include <cmath>
+#include <cstring>
+#include <functional>
+
+#include "frame/surface_layers.h"
+#include "frame/view.h"
+#include "support/gpu_fixture.h"
+#include "support/tiny_scenes.h"
+
+namespace nephroid {
+namespace {
+
+constexpr std::uint32_t kGrid = 24, kSize = 64;
+
+/// What became of photons on a floor of 4 m.
+struct Deposited {
+  std::vector<dvec3> flux;       ///< W, by view and texel
+  std::vector<dvec3> direction;  ///< luminance times direction
+  dvec3 lost{0.0};
+  std::vector<std::int32_t> steps;  ///< as they are in the map
+
+  dvec3 total() const {
+    dvec3 sum(0.0);
+    for (const dvec3& f : flux) sum += f;
+    return sum;
+  }
+};
+
+class DepositTest : public testing::GpuTest {
+ protected:
+  /// Photons as a function of their place on the grid, both coordinates in [0, 1].
+  using Emission = std::function<Photon(double, double)>;
+
+  static std::vector<Photon> emit(const Emission& emission) {
+    std::vector<Photon> photons;
+    for (std::uint32_t y = 0; y < kGrid; ++y)
+      for (std::uint32_t x = 0; x < kGrid; ++x) photons.push_back(emission((x + 0.5) / kGrid, (y + 0.5) / kGrid));
+    return photons;
+  }
+
+  static Photon makePhoton(double x, double z, vec3 flux = vec3(1.0F, 2.0F, 0.5F)) {
+    Photon photon{};
+    photon.position = vec3(static_cast<float>(x), 0.0F, static_cast<float>(z));
+    photon.direction = normalize(vec3(0.3F, -1.0F, 0.1F));
+    photon.flux = flux;
+    photon.light_band_flags = packLightBandFlags(0, 0, kPhotonValid);
+    photon.chain = 7;
+    return photon;
+  }
+
+  static Deposited deposit(const std::vector<Photon>& photons, std::span<const ViewRecord> views,
+                           Reconstruction reconstruction = Reconstruction::kQuads) {
+    SceneData scene;
+    test::addObject(scene, test::makeFloor(4.0), test::makeDiffuse(vec3(0.5F)));
+    const auto view_count = static_cast<std::uint32_t>(views.size());
+    gpu::CommandRecorder recorder(device());
+    recorder.begin();
+    const SceneBuffers buffers(device(), recorder, scene, 0.25F);
+    SurfaceLayers layers(device(), buffers, kSize, view_count, 1);
+    const std::size_t draws[] = {0};
+    layers.record(recorder, views, draws);
+    PhotonBuffer buffer(device(), kGrid * kGrid);
+    buffer.batch = {.grid_width = kGrid, .grid_height = kGrid, .band_count = 1};
+    recorder.upload(buffer.chunks()[0].buffer, std::as_bytes(std::span(photons)));
+    FluxMap map(device(), kSize, kSize, view_count, true);
+    map.clear(recorder, 2.0F * kGrid * kGrid);
+    Deposit pass(device(), reconstruction, view_count, true);
+    pass.record(recorder, buffer, {layers.views(), layers.surfaces(), 1}, 1.0F, 1.5F, buffers.sampler(), map);
+    recorder.submit();
+    return read(map, view_count);
+  }
+
+  static Deposited read(const FluxMap& map, std::uint32_t views) {
+    Deposited result;
+    const std::vector<std::byte> bytes = gpu::readBack(device(), map.flux());
+    result.steps.resize(bytes.size() / sizeof(std::int32_t));
+    std::memcpy(result.steps.data(), bytes.data(), bytes.size());
+    constexpr std::size_t kTexels = std::size_t{kSize} * kSize;
+    const double quantum = map.quantum();
+    for (std::uint32_t v = 0; v < views; ++v)
+      for (std::size_t i = 0; i < kTexels; ++i) {
+        const auto channel = [&](std::size_t c) { return quantum * result.steps[(v * 6 + c) * kTexels + i]; };
+        result.flux.emplace_back(channel(0), channel(1), channel(2));
+        result.direction.emplace_back(channel(3), channel(4), channel(5));
+      }
+    const auto lost = gpu::readBackAs<std::int32_t>(device(), map.lost());
+    result.lost = quantum * dvec3(lost[0], lost[1], lost[2]);
+    return result;
+  }
+
+  static ViewRecord fromAbove() {
+    return makeParallelView(vec3(0, -1, 0), Bounds{vec3(-2, -0.1F, -2), vec3(2, 0.1F, 2)});
+  }
+  static std::vector<ViewRecord> cubeAt(vec3 eye) {
+    std::vector<ViewRecord> views;
+    for (int face = 0; face < 6; ++face)
+      views.push_back(makeCubeView(eye, face, Bounds{vec3(-2, -0.1F, -2), vec3(2, 0.1F, 2)}));
+    return views;
+  }
+};
+
+constexpr double kPhotonCount = double{kGrid} * kGrid;
+
+TEST_F(DepositTest, AnEvenGridGivesAnEvenPicture) {
+  // Turned against the texels, by cells of any size against theirs. A row at the rim is not looked at.
+  for (const double half : {0.3, 1.1}) {
+    const ViewRecord view = fromAbove();
+    const double c = std::cos(0.4), s = std::sin(0.4);
+    const Deposited found = deposit(emit([&](double u, double v) {
+                                      const double x = half * (2.0 * u - 1.0), z = half * (2.0 * v - 1.0);
+                                      return makePhoton(c * x - s * z, s * x + c * z);
+                                    }),
+                                    std::span(&view, 1));
+    EXPECT_NEAR(found.total().x / kPhotonCount, 1.0, 1e-5);
+    EXPECT_NEAR(found.total().y / kPhotonCount, 2.0, 1e-5);
+    EXPECT_NEAR(length(found.lost), 0.0, 1e-9);
+    const double texel = 4.0 * 1.001 / kSize, per_texel = kPhotonCount * texel * texel / (4.0 * half * half);
+    for (std::size_t i = 0; i < found.flux.size(); ++i) {
+      const double x = (static_cast<double>(i % kSize) + 0.5 - 0.5 * kSize) * texel,
+                   y = (static_cast<double>(i / kSize) + 0.5 - 0.5 * kSize) * texel;
+      if (std::hypot(x, y) > half - texel) continue;
+      ASSERT_NEAR(found.flux[i].x / per_texel, 1.0, 2e-3) << i;
+      ASSERT_NEAR(found.direction[i].y / luminance(vec3(found.flux[i])), makePhoton(0, 0).direction.y, 2e-3);
+    }
+  }
+}
+
+TEST_F(DepositTest, FoldsKeepTheirFlux) {
+  // The grid is laid over itself along a line, and drawn together into a point and into a line.
+  const ViewRecord view = fromAbove();
+  const Emission emissions[] = {
+      [](double u, double v) { return makePhoton((2.0 * u - 1.0) * (2.0 * u - 1.0), v - 0.5); },
+      [](double u, double v) { return makePhoton(std::sin(5.0 * u + v), std::sin(4.0 * v)); },
+      [](double, double) { return makePhoton(0.123, 0.456); },
+      [](double u, double) { return makePhoton(0.7 * u, 0.31 * u); },
+  };
+  for (const Emission& emission : emissions) {
+    const Deposited found = deposit(emit(emission), std::span(&view, 1));
+    EXPECT_NEAR(found.total().x / kPhotonCount, 1.0, 1e-3);
+    EXPECT_NEAR(length(found.lost), 0.0, 1e-9);
+  }
+}
+
+TEST_F(DepositTest, QuadsAndSplatsBringTheSameFlux) {
+  // Some photons are missing, others went elsewhere: their cells are torn.
+  const ViewRecord view = fromAbove();
+  std::vector<Photon> photons = emit([](double u, double v) { return makePhoton(2.4 * u - 1.2, 1.8 * v - 0.9); });
+  double valid = 0.0;
+  for (std::size_t i = 0; i < photons.size(); ++i) {
+    if (i % 7 == 3) photons[i].light_band_flags = packLightBandFlags(0, 0, 0);
+    if (i % 5 == 1) photons[i].chain = 9;
+    valid += i % 7 == 3 ? 0.0 : 1.0;
+  }
+  for (const Reconstruction reconstruction : {Reconstruction::kQuads, Reconstruction::kSplats}) {
+    const Deposited found = deposit(photons, std::span(&view, 1), reconstruction);
+    EXPECT_NEAR(found.total().x / valid, 1.0, 1e-4);
+    EXPECT_NEAR(length(found.lost), 0.0, 1e-9);
+  }
+}
+
+TEST_F(DepositTest, AllFacesOfACubeTogetherHoldTheFlux) {
+  // From just above the floor it is seen by five of them, and cells cross their edges. They are up to 17 degrees wide
+  // there; what a face's plane makes of so wide a cell is not quite its share.
+  const std::vector<ViewRecord> views = cubeAt(vec3(0.1F, 0.4F, -0.2F));
+  const Deposited found =
+      deposit(emit([](double u, double v) { return makePhoton(3.0 * u - 1.5, 3.0 * v - 1.5); }), views);
+  const double texels = static_cast<double>(found.flux.size()) / 6.0;
+  std::vector<double> by_face(6, 0.0);
+  for (std::size_t i = 0; i < found.flux.size(); ++i)
+    by_face[static_cast<std::size_t>(static_cast<double>(i) / texels)] += found.flux[i].x;
+  EXPECT_NEAR(found.total().x / kPhotonCount, 1.0, 0.01);
+  EXPECT_NEAR(found.lost.x, 0.0, 1e-9);
+  for (const int face : {0, 1, 3, 4, 5}) EXPECT_GT(by_face[static_cast<std::size_t>(face)], 10.0) << face;
+  EXPECT_EQ(by_face[2], 0.0);
+}
+
+TEST_F(DepositTest, WhatIsNotSeenIsLost) {
+  const ViewRecord view = fromAbove();
+  // A metre under the floor; and on it, but from below.
+  const Emission hidden = [](double u, double v) {
+    Photon photon = makePhoton(u, v);
+    photon.position.y = -1.0F;
+    return photon;
+  };
+  const Emission from_below = [](double u, double v) {
+    Photon photon = makePhoton(u, v);
+    photon.direction.y = -photon.direction.y;
+    return photon;
+  };
+  for (const Emission& emission : {hidden, from_below}) {
+    const Deposited found = deposit(emit(emission), std::span(&view, 1));
+    EXPECT_EQ(found.total().x, 0.0);
+    EXPECT_NEAR(found.lost.x / kPhotonCount, 1.0, 1e-3);
+  }
+}
+
+TEST_F(DepositTest, TwoRunsAreEqual) {
+  const ViewRecord view = fromAbove();
+  const std::vector<Photon> photons =
+      emit([](double u, double v) { return makePhoton(std::sin(9.0 * u * v), std::cos(7.0 * u)); });
+  EXPECT_EQ(deposit(photons, std::span(&view, 1)).steps, deposit(photons, std::span(&view, 1)).steps);
+}
+
+TEST_F(DepositTest, NegativeFluxOfBandsIsSubtracted) {
+  const ViewRecord view = fromAbove();
+  const Deposited found = deposit(
+      emit([](double u, double v) { return makePhoton(2.0 * u - 1.0, 2.0 * v - 1.0, vec3(1.0F, -0.25F, 0.0F)); }),
+      std::span(&view, 1));
+  EXPECT_NEAR(found.total().y / kPhotonCount, -0.25, 1e-5);
+  EXPECT_EQ(found.total().z, 0.0);
+}
+
+}  // namespace
+}  // namespace nephroid
