@@ -30,17 +30,40 @@ struct Flight {
   Path path;
   uint chain;
   uint outcome;
+  uint chances;         // to leave what it is inside of, that it passed
+  bool decided;         // the branch has nothing more to say
   float last_distance;  // m, since the last event
 };
 
-/// Goes on along the branch: reflected or let through at the first surface; inside, reflected so many times before it
-/// leaves. Where light is reflected totally there is no choice.
-Way chooseBranch(Way reflected, Way transmitted, uint events, bool is_inside) {
-  if (events == 0u) return push.branch == 0u ? reflected : transmitted;
+/// What a surface does with the ways on from it.
+struct Choice {
+  Way way;
+  vec3 not_followed;  // weight of the other way if no branch takes it
+  bool leaves;        // a chance to leave was met
+};
+
+/// Goes on along the branch, so that no two branches take the same path: at the first event one is reflected and the
+/// others are let in; of those, branch b leaves at its b-th chance, that is where something is let through from the
+/// inside, and is reflected at those before. Total reflection is no chance and is followed by all. Elsewhere (at what is
+/// met after leaving, or inside) the way that carries more is followed, and the other is lost.
+Choice chooseWay(Way reflected, Way transmitted, uint events, bool is_inside, inout Flight flight) {
+  if (events == 0u) {
+    flight.decided = push.branch == 0u;
+    return Choice(flight.decided ? reflected : transmitted, vec3(0.0), false);
+  }
   bool can_leave = largest(transmitted.weight) > 0.0;
-  if (!is_inside) return largest(reflected.weight) >= largest(transmitted.weight) ? reflected : transmitted;
-  return can_leave && events >= push.branch ? transmitted : reflected;
+  if (is_inside && can_leave && !flight.decided) {
+    ++flight.chances;
+    flight.decided = flight.chances == push.branch;
+    return Choice(flight.decided ? transmitted : reflected, vec3(0.0), true);
+  }
+  bool reflects = largest(reflected.weight) >= largest(transmitted.weight);
+  return Choice(reflects ? reflected : transmitted, reflects ? transmitted.weight : reflected.weight, false);
 }
+
+/// Whether what becomes of the flight from here on is this branch's: branches b > k share the way past the first k
+/// chances, and what ends there is the one of branch k + 1.
+bool isOwn(Flight flight) { return flight.decided || push.branch == flight.chances + 1u; }
 
 void meetGenerator(inout Flight flight, Met met) {
   bool emission_seen;
@@ -58,10 +81,10 @@ void meetGenerator(inout Flight flight, Met met) {
   Way reflected = reflection(scattered, e.surface), transmitted = transmission(scattered, e.surface);
   // Of flux, not of radiance: it does not know the index.
   transmitted.weight /= radianceScale(optics);
-  Way way = chooseBranch(reflected, transmitted, events, e.crossing.is_solid && !e.crossing.entering);
-  flight.chain = hashChain(flight.chain, 2u * met.instance + (way.through ? 1u : 0u));
-  take(flight.path, way, e.surface, e.crossing, false);
-  if (largest(flight.path.throughput) <= 0.0) flight.outcome = events == 0u ? kOutcomeNoWay : kOutcomeAbsorbed;
+  Choice choice = chooseWay(reflected, transmitted, events, e.crossing.is_solid && !e.crossing.entering, flight);
+  flight.chain = hashChain(flight.chain, 2u * met.instance + (choice.way.through ? 1u : 0u));
+  take(flight.path, choice.way, e.surface, e.crossing, false);
+  if (largest(abs(flight.path.throughput)) <= 0.0) flight.outcome = events == 0u ? kOutcomeNoWay : kOutcomeAbsorbed;
   else if (flight.path.ended) flight.outcome = flight.path.events >= max_events ? kOutcomeBounceLimit : kOutcomeInterior;
 }
 
@@ -79,6 +102,14 @@ Met meetNext(inout Flight flight, Pictures generators, Pictures receivers) {
     flight.path.ended = true;
   }
   return met;
+}
+
+/// Ends that another branch has to say: before the first event the first branch, else see isOwn.
+void leaveToOthers(inout Flight flight) {
+  bool met_generator = flight.path.events > 0u;
+  if (met_generator ? isOwn(flight) : push.branch == 0u) return;
+  flight.path.throughput = vec3(0.0);
+  if (met_generator) flight.outcome = kOutcomeNoWay;
 }
 
 Photon describe(Flight flight, vec3 place, uint index) {
@@ -106,7 +137,8 @@ void main() {
   EmissionRay emitted = emissionRay(view, film.x, film.y);
   vec3 flux = cellFlux(lights[push.light], view, film.x, film.y, 1.0 / float(push.grid * push.grid));
   Ray ray = Ray(emitted.origin, emitted.dir);
-  Flight flight = Flight(Path(ray, flux, false, false, 0u, 0u, 0.0, kNowhere, 0u, kInTheOpen), 0u, kOutcomeDeposited, 0.0);
+  Path path = Path(ray, flux, false, false, 0u, 0u, 0.0, kNowhere, 0u, kInTheOpen);
+  Flight flight = Flight(path, 0u, kOutcomeDeposited, 0u, false, 0.0);
 
   Pictures generators = Pictures(0u, push.generator_views, push.generator_layers, push.generator_size);
   Pictures receivers = Pictures(push.generator_views, push.receiver_views, 1u, push.receiver_size);
@@ -135,5 +167,6 @@ void main() {
     }
   }
   if (!flight.path.ended) flight.outcome = kOutcomeBounceLimit;
+  leaveToOthers(flight);
   photons[cell.y * push.grid + cell.x] = describe(flight, place, cell.y * push.grid + cell.x);
 }

@@ -27,7 +27,9 @@ struct LightPictures {
 struct TransportSettings {
   std::uint32_t grid = 256;  ///< cells along a side of each of the emission's views
   vec2 offset{0.5F};         ///< of the photon in its cell, in [0, 1)²
-  std::uint32_t branch = 0;  ///< 0: reflected at the first surface; b >= 1: let in, and reflected b − 1 times inside
+  /// 0: reflected at the first surface; b >= 1: let in, and out again at the b-th place where something gets out. No
+  /// path is in two branches.
+  std::uint32_t branch = 0;
   std::uint32_t max_events = 8;
   std::uint32_t iterations = 8;  ///< to find where a ray meets a surface
 };
