@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <map>
 #include <span>
 #include <vector>
 
@@ -20,7 +21,7 @@ struct LightPictures {
   std::span<const ViewRecord> receiver_views;  ///< of everything that light may reach
   const SurfaceLayers& first;                  ///< what the emission's views show of all there is; one layer
   const SurfaceLayers& generators;             ///< what they show of generators
-  const SurfaceLayers& receivers;              ///< what the others show of receivers; one layer
+  const SurfaceLayers& receivers;              ///< what the others show of all that is no generator, black things too
 };
 
 /// How light is followed.
@@ -32,6 +33,9 @@ struct TransportSettings {
   std::uint32_t branch = 0;
   std::uint32_t max_events = 8;
   std::uint32_t iterations = 8;  ///< to find where a ray meets a surface
+  /// For the ledger (PhotonLedger::account): what stays on the way. Of no use without it, and it takes time.
+  const gpu::Buffer* account = nullptr;
+  bool is_last = false;  ///< no branch beyond this one is followed: for the account
 };
 
 /// Not thread-safe. Device and buffers must outlive it.
@@ -49,9 +53,12 @@ class Transport {
               std::uint32_t light, std::uint32_t view, const TransportSettings& settings, const PhotonBuffer& photons);
 
  private:
+  const gpu::ComputePipeline& pipelineFor(const TransportSettings& settings);
+
+  gpu::Device& device_;
   const SceneBuffers& buffers_;
-  gpu::ComputePipeline pipeline_;
-  gpu::Buffer views_;
+  std::map<std::vector<std::uint32_t>, gpu::ComputePipeline> pipelines_;  ///< by what they are compiled for
+  gpu::Buffer views_, no_account_;
 };
 
 }  // namespace nephroid

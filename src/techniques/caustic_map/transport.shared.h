@@ -18,6 +18,28 @@ NEPHROID_CONST uint kOutcomeInterior = 6u;  // inside more solids than the list 
 NEPHROID_CONST uint kOutcomeAbsorbed = 7u;  // nothing of it is left
 NEPHROID_CONST uint kOutcomeNoWay = 8u;     // there is no such branch, or another one has it
 
+NEPHROID_CONST uint kOutcomeNumerical = 9u;  // not a number
+NEPHROID_CONST uint kOutcomeCount = 10u;
+
+/// Where the flux of a cell stayed that its photon does not carry, W: for the ledger. Of what branches have in common
+/// each share is in the account of one of them.
+struct PhotonAccount {
+  vec3 emitted;     // of the first branch: the light's flux through the cell
+  vec3 blocked;     // by the diffuse lobe of the generator that is met first
+  vec3 absorbed;    // in media and by generators
+  vec3 diffuse;     // share of the diffuse lobes of generators that are met later
+  vec3 other_way;   // where a branch follows one of two ways and no branch the other
+  vec3 internal;    // still inside where the last branch leaves
+  vec3 normal;      // sent through the true surface by an interpolated normal
+  vec3 microfacet;  // met more than one facet
+};
+
+/// Words of a record of sums: each member of PhotonAccount in order, then the photons' flux by outcome.
+NEPHROID_CONST uint kAccountKinds = 8u;
+NEPHROID_CONST uint kLedgerKinds = kAccountKinds + kOutcomeCount;
+/// Photons that a thread adds up: few enough that rounding does not count.
+NEPHROID_CONST uint kLedgerRow = 64u;
+
 struct TransportPush {
   uint grid;    // cells along a side of a view's grid
   uint light;   // in the table of lights
@@ -28,9 +50,11 @@ struct TransportPush {
   uint generator_views;
   uint generator_layers;
   uint receiver_views;
+  uint receiver_layers;
   float generator_size;
   float receiver_size;
   uint iterations;
+  uint is_last;          // no other branch has what stays inside
   vec3 generator_lower;  // bounds of what casts caustics, and of everything
   vec3 generator_upper;
   vec3 scene_lower;

@@ -7,6 +7,7 @@
 #include "frame/emission.shared.h"
 #include "frame/light_views.h"
 #include "techniques/caustic_map/emission_views.h"
+#include "techniques/caustic_map/photon_ledger.h"
 #include "techniques/caustic_map/transport.h"
 
 namespace nephroid::testing {
@@ -46,14 +47,14 @@ class LightRig {
         buffers_(device, recorder_, scene, 0.25F),
         first_(device, buffers_, grid, viewCount(), 1),
         inner_(device, buffers_, grid, viewCount(), layers),
-        outer_(device, buffers_, grid, static_cast<std::uint32_t>(view_.views.size()), 1),
+        outer_(device, buffers_, grid, static_cast<std::uint32_t>(view_.views.size()), 2),
         photons_(device, grid * grid),
         transport_(device, buffers_) {
     std::vector<std::size_t> all, generators, receivers;
     for (std::size_t i = 0; i < buffers_.draws().size(); ++i) {
       all.push_back(i);
       if (buffers_.draws()[i].generates) generators.push_back(i);
-      if (buffers_.draws()[i].receives && !buffers_.draws()[i].generates) receivers.push_back(i);
+      if (!buffers_.draws()[i].generates) receivers.push_back(i);
     }
     first_.record(recorder_, views_, all);
     inner_.record(recorder_, views_, generators);
@@ -73,6 +74,22 @@ class LightRig {
     flown.photons = readPhotons(device_, photons_);
     for (const Photon& p : flown.photons) ++flown.outcomes[Flown::outcomeOf(p)];
     return flown;
+  }
+
+  /// Of all views and of branches 0 to `last`.
+  Ledger ledger(std::uint32_t last, TransportSettings settings = {}) {
+    PhotonLedger ledger(device_, grid_ * grid_, viewCount() * (last + 1));
+    settings.grid = grid_;
+    settings.account = &ledger.account();
+    recorder_.begin();
+    for (std::uint32_t view = 0; view < viewCount(); ++view)
+      for (settings.branch = 0; settings.branch <= last; ++settings.branch) {
+        settings.is_last = settings.branch == last;
+        transport_.record(recorder_, pictures(), lights_, 0, view, settings, photons_);
+        ledger.record(recorder_, photons_, grid_ * grid_, 0, settings.branch);
+      }
+    recorder_.submit();
+    return ledger.read(0);
   }
 
   LightPictures pictures() const {

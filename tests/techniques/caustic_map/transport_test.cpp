@@ -131,21 +131,12 @@ TEST_F(TransportTest, EveryPhotonSaysWhatBecameOfIt) {
   EXPECT_GT(flown.outcomes.at(kOutcomeDeposited), 3500);
 }
 
-/// A closed prism: a triangle in the plane of x and y, drawn out along z.
-Mesh makePrism(dvec2 a, dvec2 b, dvec2 c, double half_length) {
-  Mesh mesh;
-  mesh.name = "prism";
-  for (const double z : {-half_length, half_length})
-    for (const dvec2 corner : {a, b, c}) mesh.positions.emplace_back(vec3(dvec3(corner, z)));
-  mesh.triangles = {{0, 2, 1}, {3, 4, 5}, {0, 1, 4}, {0, 4, 3}, {1, 2, 5}, {1, 5, 4}, {2, 0, 3}, {2, 3, 5}};
-  return mesh;
-}
-
 /// An equilateral prism of side 1 over a floor; its base is level.
 SceneData makePrismScene(const Material& glass) {
   SceneData scene;
   test::addObject(scene, test::makeFloor(40.0), test::makeDiffuse(vec3(0.6F)));
-  test::addObject(scene, makePrism({-0.5, 2.0}, {0.5, 2.0}, {0.0, 2.0 + std::sqrt(0.75)}, 1.0), glass);
+  const dvec2 corners[] = {{-0.5, 2.0}, {0.5, 2.0}, {0.0, 2.0 + std::sqrt(0.75)}};
+  test::addObject(scene, makePrism("prism", corners, -1.0, 1.0), glass);
   return scene;
 }
 
