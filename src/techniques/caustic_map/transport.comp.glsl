@@ -189,7 +189,7 @@ Photon describe(Flight flight, vec3 place, uint index) {
   photon.position = place;
   photon.path_length = flight.last_distance;
   photon.direction = flight.path.ray.dir;
-  photon.light_band_flags = packLightBandFlags(push.light, 0u, flags);
+  photon.light_band_flags = packLightBandFlags(push.light, push.band, flags);
   photon.flux = flight.path.throughput;
   photon.index = index;
   photon.chain = flight.chain;
@@ -204,15 +204,16 @@ void main() {
   ViewRecord view = layer_views[push.view];
   vec2 film = (vec2(cell) + push.offset) / float(push.grid) * 2.0 - 1.0;
   EmissionRay emitted = emissionRay(view, film.x, film.y);
-  vec3 flux = cellFlux(lights[push.light], view, film.x, film.y, 1.0 / float(push.grid * push.grid));
+  vec3 flux = cellFlux(lights[push.light], view, film.x, film.y, 1.0 / float(push.grid * push.grid)) * push.band_weight;
   Ray ray = Ray(emitted.origin, emitted.dir);
-  Path path = Path(ray, flux, false, false, 0u, 0u, 0.0, kNowhere, 0u, kInTheOpen);
+  Path path = Path(ray, flux, false, false, 0u, 0u, push.wavelength_nm, kNowhere, 0u, kInTheOpen);
   vec3 none = vec3(0.0);
   PhotonAccount account = PhotonAccount(push.branch == 0u ? flux : none, none, none, none, none, none, none, none);
   Flight flight = Flight(path, 0u, kOutcomeDeposited, 0u, false, 0, 0.0, account);
 
-  Pictures generators = Pictures(0u, push.generator_views, push.generator_layers, push.generator_size);
-  Pictures receivers = Pictures(push.generator_views, push.receiver_views, push.receiver_layers, push.receiver_size);
+  uvec4 counts = (uvec4(push.pictures) >> uvec4(0u, 8u, 16u, 24u)) & 255u;
+  Pictures generators = Pictures(0u, counts.x, counts.y, push.generator_size);
+  Pictures receivers = Pictures(counts.x, counts.z, counts.w, push.receiver_size);
   ivec3 texel = ivec3(ivec2((film * 0.5 + 0.5) * push.generator_size), push.view);
   uvec2 seen = texelFetch(first_seen, texel, 0).xy;
   Met met = Met(kFarAway, 0.0, 0.0, kNowhere, 0u);

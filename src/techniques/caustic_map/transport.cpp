@@ -7,6 +7,8 @@
 namespace nephroid {
 namespace {
 
+static_assert(sizeof(TransportPush) <= 128);
+
 /// Two cubes of views.
 constexpr std::uint32_t kMostViews = 12;
 
@@ -45,24 +47,27 @@ void Transport::record(gpu::CommandRecorder& recorder, const LightPictures& pict
   std::vector<ViewRecord> views(pictures.emission_views.begin(), pictures.emission_views.end());
   views.insert(views.end(), pictures.receiver_views.begin(), pictures.receiver_views.end());
   recorder.upload(views_, std::as_bytes(std::span(views)));
-  const TransportPush push{.grid = settings.grid,
-                           .light = light,
-                           .view = view,
-                           .branch = settings.branch,
-                           .max_events = settings.max_events,
-                           .offset = settings.offset,
-                           .generator_views = static_cast<std::uint32_t>(pictures.emission_views.size()),
-                           .generator_layers = pictures.generators.layerCount(),
-                           .receiver_views = static_cast<std::uint32_t>(pictures.receiver_views.size()),
-                           .receiver_layers = pictures.receivers.layerCount(),
-                           .generator_size = static_cast<float>(pictures.generators.size()),
-                           .receiver_size = static_cast<float>(pictures.receivers.size()),
-                           .iterations = settings.iterations,
-                           .is_last = settings.is_last ? 1U : 0U,
-                           .generator_lower = pictures.generator_bounds.lower,
-                           .generator_upper = pictures.generator_bounds.upper,
-                           .scene_lower = pictures.scene_bounds.lower,
-                           .scene_upper = pictures.scene_bounds.upper};
+  const TransportPush push{
+      .grid = settings.grid,
+      .light = light,
+      .view = view,
+      .branch = settings.branch,
+      .max_events = settings.max_events,
+      .offset = settings.offset,
+      .pictures =
+          packCounts(static_cast<std::uint32_t>(pictures.emission_views.size()), pictures.generators.layerCount(),
+                     static_cast<std::uint32_t>(pictures.receiver_views.size()), pictures.receivers.layerCount()),
+      .generator_size = static_cast<float>(pictures.generators.size()),
+      .receiver_size = static_cast<float>(pictures.receivers.size()),
+      .iterations = settings.iterations,
+      .is_last = settings.is_last ? 1U : 0U,
+      .wavelength_nm = settings.band.wavelength_nm,
+      .band_weight = settings.band.weight,
+      .band = settings.band_index,
+      .generator_lower = pictures.generator_bounds.lower,
+      .generator_upper = pictures.generator_bounds.upper,
+      .scene_lower = pictures.scene_bounds.lower,
+      .scene_upper = pictures.scene_bounds.upper};
   const gpu::Buffer& target = photons.chunks()[0].buffer;
   const gpu::Buffer& account = settings.account != nullptr ? *settings.account : no_account_;
   const gpu::ComputePipeline& pipeline = pipelineFor(settings);

@@ -6,6 +6,7 @@
 #include <span>
 #include <vector>
 
+#include "core/spectrum.h"
 #include "frame/photon_buffer.h"
 #include "frame/scene_buffers.h"
 #include "frame/surface_layers.h"
@@ -32,6 +33,9 @@ struct TransportSettings {
   /// path is in two branches.
   std::uint32_t branch = 0;
   std::uint32_t max_events = 8;
+  /// Part of the spectrum, of makeBands; wavelength 0: all of it as one, with the indices that materials say.
+  Band band{0.0F, vec3(1.0F)};
+  std::uint32_t band_index = 0;
   std::uint32_t iterations = 8;  ///< to find where a ray meets a surface
   /// For the ledger (PhotonLedger::account): what stays on the way. Of no use without it, and it takes time.
   const gpu::Buffer* account = nullptr;

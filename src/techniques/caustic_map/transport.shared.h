@@ -40,21 +40,24 @@ NEPHROID_CONST uint kLedgerKinds = kAccountKinds + kOutcomeCount;
 /// Photons that a thread adds up: few enough that rounding does not count.
 NEPHROID_CONST uint kLedgerRow = 64u;
 
+/// Four numbers below 256.
+NEPHROID_FN uint packCounts(uint a, uint b, uint c, uint d) { return a | (b << 8) | (c << 16) | (d << 24); }
+
 struct TransportPush {
   uint grid;    // cells along a side of a view's grid
   uint light;   // in the table of lights
   uint view;    // of the emission, among those of the light
   uint branch;  // 0: reflected at the first surface; b >= 1: enters, and leaves at its b-th chance
   uint max_events;
-  vec2 offset;  // of the photon in its cell, in [0, 1)
-  uint generator_views;
-  uint generator_layers;
-  uint receiver_views;
-  uint receiver_layers;
+  vec2 offset;    // of the photon in its cell, in [0, 1)
+  uint pictures;  // their counts, by packCounts
   float generator_size;
   float receiver_size;
   uint iterations;
-  uint is_last;          // no other branch has what stays inside
+  uint is_last;         // no other branch has what stays inside
+  float wavelength_nm;  // of the band; 0: nothing disperses
+  vec3 band_weight;     // of the light's flux
+  uint band;
   vec3 generator_lower;  // bounds of what casts caustics, and of everything
   vec3 generator_upper;
   vec3 scene_lower;

@@ -66,6 +66,20 @@ TEST_F(PhotonLedgerTest, ClosesForACubeOfViews) {
   expectCloses(rig.ledger(3));
 }
 
+TEST_F(PhotonLedgerTest, ClosesForBands) {
+  Material glass = makeColoured();
+  glass.dispersion = 1.0F;
+  SceneData scene = test::makeBallScene(glass, 96);
+  scene.lights.push_back(test::makeSun(vec3(0.3F, -1, 0), vec3(1, 2, 3)));
+  LightRig rig(device(), scene);
+  Ledger sum;
+  // Weights may be negative, so shares of single bands say little: the sum is the light's.
+  for (const Band& band : makeBands(4)) sum.add(rig.ledger(2, {.band = band}));
+  expectCloses(sum);
+  for (int c = 0; c < 3; ++c) EXPECT_NEAR(sum.emitted[c] / rig.emitted()[c], 1.0, 1e-5);
+  EXPECT_GT(sum.deposited.y, 0.1 * sum.emitted.y);
+}
+
 TEST_F(PhotonLedgerTest, TwoRunsAreEqual) {
   SceneData scene = test::makeBallScene(makeColoured(), 96);
   scene.lights.push_back(test::makePoint(vec3(1, 5, 1), vec3(2, 3, 5)));

@@ -1,8 +1,10 @@
 #include "techniques/caustic_map/transport.h"
 
 #include <cmath>
+#include <optional>
 
 #include "core/optics/fresnel.shared.h"
+#include "support/closed_form.h"
 #include "support/gpu_fixture.h"
 #include "support/tiny_scenes.h"
 #include "techniques/caustic_map/light_rig.h"
@@ -132,9 +134,9 @@ TEST_F(TransportTest, EveryPhotonSaysWhatBecameOfIt) {
 }
 
 /// An equilateral prism of side 1 over a floor; its base is level.
-SceneData makePrismScene(const Material& glass) {
+SceneData makePrismScene(const Material& glass, double floor = 40.0) {
   SceneData scene;
-  test::addObject(scene, test::makeFloor(40.0), test::makeDiffuse(vec3(0.6F)));
+  test::addObject(scene, test::makeFloor(floor), test::makeDiffuse(vec3(0.6F)));
   const dvec2 corners[] = {{-0.5, 2.0}, {0.5, 2.0}, {0.0, 2.0 + std::sqrt(0.75)}};
   test::addObject(scene, makePrism("prism", corners, -1.0, 1.0), glass);
   return scene;
@@ -174,6 +176,69 @@ TEST_F(TransportTest, BranchesOfABallShareTheLight) {
   SceneData scene = test::makeBallScene(test::makeGlass(1.5F), 128);
   scene.lights.push_back(test::makePoint(vec3(1, 6, 0), vec3(10)));
   expectBranchesShareTheLight(device(), scene, 0.999);
+}
+
+/// Angle of deviation of a ray through an equilateral prism, in its plane; nothing if it does not leave the second
+/// face.
+std::optional<double> deviate(dvec2 dir, double index) {
+  const dvec2 left = dvec2(-std::sqrt(0.75), 0.5), right = dvec2(std::sqrt(0.75), 0.5);
+  const auto inside = closed_form::refract(dir, left, 1.0, index);
+  const auto out = inside ? closed_form::refract(*inside, -right, index, 1.0) : std::nullopt;
+  if (!out) return std::nullopt;
+  return std::acos(dot(dir, *out));
+}
+
+TEST_F(TransportTest, APrismDeviatesEachBandByItsIndex) {
+  constexpr double kIndex = 1.5, kAbbe = 20.0;
+  Material glass = test::makeGlass(kIndex);
+  glass.dispersion = 20.0F / static_cast<float>(kAbbe);
+  SceneData scene = makePrismScene(glass, 2.0);
+  // Not far from the smallest deviation, from the left and below; light that the base reflects turns by 2 · 0.2 rad.
+  const dvec2 dir = normalize(dvec2(std::cos(0.2), std::sin(0.2)));
+  scene.lights.push_back(test::makeSun(vec3(dvec3(dir, 0.0)), vec3(2)));
+  LightRig rig(device(), scene);
+  double first = 0.0, last = 0.0;
+  const std::vector<Band> bands = makeBands(6);
+  for (std::uint32_t b = 0; b < bands.size(); ++b) {
+    const auto wanted = deviate(dir, closed_form::cauchyIndex(kIndex, kAbbe, bands[b].wavelength_nm));
+    ASSERT_TRUE(wanted);
+    int through = 0;
+    double worst = 0.0;
+    for (const Photon& p : rig.fly({.branch = 1, .band = bands[b], .band_index = b}).photons) {
+      const std::uint32_t outcome = Flown::outcomeOf(p);
+      ASSERT_EQ(photonBand(p), b);
+      if ((outcome != kOutcomeEscaped && outcome != kOutcomeDeposited) || std::abs(p.direction.z) > 1e-4F) continue;
+      const double found = std::acos(std::min(dot(dir, dvec2(p.direction.x, p.direction.y)), 1.0));
+      // Through the base and after total reflection it goes elsewhere.
+      if (std::abs(found - *wanted) > 0.1) continue;
+      ++through;
+      worst = std::max(worst, std::abs(found - *wanted));
+    }
+    EXPECT_GT(through, 2000) << b;
+    EXPECT_LT(closed_form::degreesD(worst), 0.01) << b;
+    (b == 0 ? first : last) = *wanted;
+  }
+  // Blue is bent more, by more than what is tolerated.
+  EXPECT_GT(closed_form::degreesD(first - last), 2.0);
+}
+
+TEST_F(TransportTest, BandsAddUpToOneWhereNothingDisperses) {
+  SceneData scene = test::makeBallScene(test::makeGlass(1.5F), 96);
+  scene.lights.push_back(test::makeSun(vec3(0.3F, -1, 0), vec3(1, 2, 3)));
+  LightRig rig(device(), scene);
+  const Flown one = rig.fly({.branch = 1});
+  std::vector<dvec3> sums(one.photons.size(), dvec3(0.0));
+  const std::vector<Band> bands = makeBands(5);
+  for (std::uint32_t b = 0; b < bands.size(); ++b) {
+    const Flown flown = rig.fly({.branch = 1, .band = bands[b], .band_index = b});
+    for (std::size_t i = 0; i < sums.size(); ++i) {
+      sums[i] += dvec3(flown.photons[i].flux);
+      ASSERT_EQ(flown.photons[i].position, one.photons[i].position);
+      ASSERT_EQ(Flown::outcomeOf(flown.photons[i]), Flown::outcomeOf(one.photons[i]));
+    }
+  }
+  for (std::size_t i = 0; i < sums.size(); ++i)
+    for (int c = 0; c < 3; ++c) ASSERT_NEAR(sums[i][c], one.photons[i].flux[c], 2e-6 * rig.cellArea() * 3.0);
 }
 
 TEST_F(TransportTest, WhatLiesInWaterBelongsToOneBranch) {
