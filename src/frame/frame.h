@@ -64,6 +64,8 @@ class RealtimeFrame {
   /// Starts the sums again.
   void reset();
   std::uint32_t samples() const { return samples_; }
+  /// What draws the caustic; null if there is nothing to draw.
+  RealtimeTechnique* technique() const { return technique_.get(); }
   /// Of the last frame, by pass; those of lights' grids come first.
   const std::vector<gpu::PassTime>& passTimes() const { return times_; }
 

@@ -46,6 +46,7 @@ NEPHROID_CONST uint kInstanceMirrored = 1u;    // the winding is reversed in wor
 NEPHROID_CONST uint kInstanceHasNormals = 2u;  // else flat
 NEPHROID_CONST uint kInstancePassable = 4u;    // its material may let light pass straight through
 NEPHROID_CONST uint kInstanceGenerates = 8u;   // casts caustics
+NEPHROID_CONST uint kInstanceClosed = 16u;     // what enters it must leave it; known of scenes with generators
 
 /// A material; see scene/scene_data.h for the terms. Indices of textures are kNowhere where there is none.
 struct MaterialRecord {
@@ -122,8 +123,8 @@ struct ForeignViewRecord {
   vec4 world_row_y;
   vec4 world_row_z;
   vec4 world_row_w;
-  float depth_step;      // between two depths that the format tells apart,
-  float depth_ulp;       // and the same relative to the depth
+  float depth_step;        // between two depths that the format tells apart,
+  float depth_ulp;         // and the same relative to the depth
   uint normals_are_coded;  // as 0.5 + 0.5 n
   uint pad;
 };

@@ -12,6 +12,7 @@
 #include "core/parallel.h"
 #include "frame/table.h"
 #include "nephroid/error.h"
+#include "scene/mesh_topology.h"
 
 namespace nephroid {
 namespace {
@@ -243,6 +244,26 @@ void SceneBuffers::uploadMeshes(gpu::Device& device, gpu::CommandRecorder& recor
   indices_ = gpu::makeBuffer<uvec3>(device, recorder, indices, VK_BUFFER_USAGE_INDEX_BUFFER_BIT, "indices");
   triangles_ = makeTable<TriangleRecord>(device, recorder, records, "triangles");
   attributes_ = makeTable<vec4>(device, recorder, attributes, "attributes");
+  uploadNeighbours(device, recorder, scene, triangles);
+}
+
+void SceneBuffers::uploadNeighbours(gpu::Device& device, gpu::CommandRecorder& recorder, const SceneData& scene,
+                                    std::size_t triangles) {
+  static_assert(kNoNeighbour == kNowhere);
+  std::vector<glm::uvec4> records;
+  const bool wanted = std::ranges::any_of(classes_, &Classification::is_generator);
+  if (wanted) records.resize(triangles, glm::uvec4(kNowhere));
+  if (wanted)
+    parallelFor(places_.size(), [&](std::size_t i) {
+      const std::vector<uvec3> found = findNeighbours(scene.meshes[i]);
+      bool is_closed = !found.empty();
+      for (std::size_t k = 0; k < found.size(); ++k) {
+        records[places_[i].first_triangle + k] = glm::uvec4(found[k], 0);
+        is_closed = is_closed && found[k].x != kNowhere && found[k].y != kNowhere && found[k].z != kNowhere;
+      }
+      places_[i].is_closed = is_closed;
+    });
+  neighbours_ = makeTable<glm::uvec4>(device, recorder, records, "neighbours");
 }
 
 void SceneBuffers::updateInstances(gpu::Device& device, gpu::CommandRecorder& recorder, const SceneData& scene) {
@@ -272,6 +293,7 @@ void SceneBuffers::updateInstances(gpu::Device& device, gpu::CommandRecorder& re
     if (passable) record.flags |= kInstancePassable;
     const bool generates = instance.casts && classes_[mesh.material].is_generator;
     if (generates) record.flags |= kInstanceGenerates;
+    if (place.is_closed) record.flags |= kInstanceClosed;
     instances.push_back(record);
     if (mesh.triangles.empty()) continue;
     Bounds bounds;

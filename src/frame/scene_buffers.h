@@ -62,6 +62,9 @@ class SceneBuffers {
 
   const gpu::Buffer& positions() const { return positions_; }
   const gpu::Buffer& indices() const { return indices_; }
+  /// Of each triangle those of its mesh beyond its edges (findNeighbours), and nothing: a table for those who walk on
+  /// surfaces. Empty in scenes without generators.
+  const gpu::Image& neighbours() const { return neighbours_; }
   /// `kBindings` of them and, behind, of `types`.
   static std::vector<gpu::Binding> bindings(std::initializer_list<VkDescriptorType> types);
   /// What is bound to them.
@@ -76,7 +79,7 @@ class SceneBuffers {
     bool passable = false;   ///< light and sight may pass straight through it
     bool generates = false;  ///< casts caustics
     bool receives = false;   ///< catches them
-    Bounds bounds;          ///< world
+    Bounds bounds;           ///< world
   };
   const std::vector<Draw>& draws() const { return draws_; }
   const SceneTraits& traits() const { return traits_; }
@@ -85,6 +88,8 @@ class SceneBuffers {
 
  private:
   void uploadMeshes(gpu::Device& device, gpu::CommandRecorder& recorder, const SceneData& scene);
+  void uploadNeighbours(gpu::Device& device, gpu::CommandRecorder& recorder, const SceneData& scene,
+                        std::size_t triangles);
   void uploadMaterials(gpu::Device& device, gpu::CommandRecorder& recorder, const SceneData& scene,
                        float specular_alpha);
 
@@ -92,12 +97,14 @@ class SceneBuffers {
   struct MeshPlace {
     std::uint32_t first_vertex = 0, first_triangle = 0;
     std::uint32_t texcoords[2] = {kNowhere, kNowhere}, colors = kNowhere, tangents = kNowhere;
+    bool is_closed = false;
   };
 
   gpu::Sampler sampler_;
   std::vector<MeshPlace> places_;        ///< by mesh
   std::vector<Classification> classes_;  ///< by material
   gpu::Buffer positions_, indices_;
+  gpu::Image neighbours_;
   gpu::Image triangles_, instances_, materials_, attributes_, textures_, byte_texels_, float_texels_;
   std::vector<Draw> draws_;
   SceneTraits traits_;

@@ -28,18 +28,20 @@ std::vector<std::uint32_t> weldPositions(const std::vector<vec3>& positions) {
 struct Edge {
   std::uint32_t low, high;
   bool forward;
+  std::uint32_t side;  ///< 3 · triangle + which of its edges
 };
 
 std::vector<Edge> collectEdges(const Mesh& mesh, const std::vector<std::uint32_t>& welded) {
   std::vector<Edge> edges;
   edges.reserve(3 * mesh.triangles.size());
-  for (const uvec3& t : mesh.triangles) {
+  for (std::uint32_t triangle = 0; triangle < mesh.triangles.size(); ++triangle) {
+    const uvec3 t = mesh.triangles[triangle];
     const std::array<std::uint32_t, 3> v{welded[t.x], welded[t.y], welded[t.z]};
     // A triangle that welding folds to a line has no sides; its two edges would only cancel.
     if (v[0] == v[1] || v[1] == v[2] || v[2] == v[0]) continue;
-    for (std::size_t i = 0; i < 3; ++i) {
+    for (std::uint32_t i = 0; i < 3; ++i) {
       const std::uint32_t from = v[i], to = v[(i + 1) % 3];
-      edges.push_back({std::min(from, to), std::max(from, to), from < to});
+      edges.push_back({std::min(from, to), std::max(from, to), from < to, 3 * triangle + i});
     }
   }
   return edges;
@@ -60,6 +62,21 @@ void countEdges(std::vector<Edge> edges, MeshTopology& topology) {
 }
 
 }  // namespace
+
+std::vector<uvec3> findNeighbours(const Mesh& mesh) {
+  std::vector<Edge> edges = collectEdges(mesh, weldPositions(mesh.positions));
+  const auto key = [](const Edge& e) { return std::pair(e.low, e.high); };
+  std::ranges::sort(edges, {}, key);
+  std::vector<uvec3> neighbours(mesh.triangles.size(), uvec3(kNoNeighbour));
+  for (std::size_t i = 0, j = 0; i < edges.size(); i = j) {
+    for (j = i + 1; j < edges.size() && key(edges[j]) == key(edges[i]);) ++j;
+    if (j - i != 2) continue;
+    const std::uint32_t a = edges[i].side, b = edges[i + 1].side;
+    neighbours[a / 3][static_cast<int>(a % 3)] = b / 3;
+    neighbours[b / 3][static_cast<int>(b % 3)] = a / 3;
+  }
+  return neighbours;
+}
 
 MeshTopology analyseMesh(const Mesh& mesh) {
   MeshTopology topology;

@@ -2,6 +2,8 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
+#include <vector>
 
 #include "scene/scene_data.h"
 
@@ -18,8 +20,13 @@ struct MeshTopology {
   bool closed() const { return open_edge_count == 0 && nonmanifold_edge_count == 0; }
 };
 
-/// O(n log n) in the triangles; 12 bytes of scratch an edge.
+/// O(n log n) in the triangles; 16 bytes of scratch an edge.
 MeshTopology analyseMesh(const Mesh& mesh);
+
+/// Of each triangle those beyond its edges, from its first corner to the second, to the third, and back; kNoNeighbour
+/// where the edge is open, or more than two triangles meet. Vertices of equal position are taken as one.
+inline constexpr std::uint32_t kNoNeighbour = 0xFFFFFFFFU;
+std::vector<uvec3> findNeighbours(const Mesh& mesh);
 
 /// How often the surface of a closed mesh winds about `point` (object space): ±1 inside, 0 outside. O(n).
 /// @see van Oosterom and Strackee 1983, the solid angle of a triangle

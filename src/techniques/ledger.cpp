@@ -33,6 +33,14 @@ std::string_view lossReasonName(LossReason reason) {
       return "nested too deep";
     case LossReason::kNumerical:
       return "not a number";
+    case LossReason::kHidden:
+      return "not seen from the light";
+    case LossReason::kInternalReflections:
+      return "reflected inside too often";
+    case LossReason::kOtherWay:
+      return "the weaker of two ways";
+    case LossReason::kDiffuseShare:
+      return "diffuse part of generators";
     case LossReason::kCount:
       break;
   }

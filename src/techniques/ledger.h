@@ -18,6 +18,11 @@ enum class LossReason : std::uint8_t {
   kShadingNormal,     ///< the interpolated normal sends it through the true surface
   kInteriorOverflow,  ///< inside more nested solids than the interior list holds
   kNumerical,         ///< not a number: counted, never dropped silently
+  // Of techniques that follow light in pictures, and follow some of its ways.
+  kHidden,               ///< what it meets is in no picture that the light takes
+  kInternalReflections,  ///< still inside where the last branch leaves
+  kOtherWay,             ///< of two ways on the one that carries less
+  kDiffuseShare,         ///< falls on the diffuse part of what bends light as well
   kCount
 };
 std::string_view lossReasonName(LossReason reason);

@@ -29,6 +29,7 @@ struct RenderSettings {
   std::uint64_t seed = 0;
   int threads = 0;              ///< 0: all cores
   std::string device = "auto";  ///< "auto", "cpu" or the number of a Vulkan device
+  bool ledgers = false;         ///< also where they take time of their own
   ParamSet params;              ///< of the technique, from --set
 };
 
@@ -65,6 +66,8 @@ struct Technique {
   /// Of a real-time technique: draws the caustic of a frame. Null: it has none.
   /// @return  null if the scene has no caustic that it could draw
   std::unique_ptr<RealtimeTechnique> (*make_realtime)(const RealtimeInputs& inputs, const ParamSet& params) = nullptr;
+  /// What became of the photons of what make_realtime made. Null: nothing is known of them.
+  std::vector<Ledger> (*account)(RealtimeTechnique& technique) = nullptr;
   /// Pictures of the same scene, settings and seed are identical for any thread count unless a time budget ends them.
   /// @throws UsageError, DeviceError, ResourceError, InterruptedError (stopped before there was anything to keep)
   RenderResult (*render)(const SceneData& scene, const Camera& camera, const RenderSettings& settings,

@@ -161,6 +161,7 @@ double estimateMemory(const RenderSettings& settings) {
 ExitCode runRender(const RenderOptions& options) {
   if (options.output.empty()) throw UsageError("render: no output given; add -o picture.png or -o picture.exr");
   RenderSettings settings = makeSettings(options.technique);
+  settings.ledgers = options.verbose || options.json;
   settings.layers = parseLayerList(options.aov);
   const std::optional<FrameRange> frames = parseFrames(options.frames);
   checkPicture(frames ? frameName(options.output, frames->first) : options.output, settings.layers, options.picture);

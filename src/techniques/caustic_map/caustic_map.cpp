@@ -42,8 +42,8 @@ constexpr std::uint32_t kCellStream = 0xCA057000U;
 constexpr int kBoundCells = 32;
 constexpr float kBoundMargin = 1.02F;
 
-/// No less than what a light sends through its views, W, of the largest channel.
-float boundFlux(LightRecord light, const std::vector<ViewRecord>& views) {
+/// No less than what a light sends through its views in all bands, signs left out, W, of the largest channel.
+float boundFlux(LightRecord light, const std::vector<ViewRecord>& views, const std::vector<Band>& bands) {
   // Of all directions and sides: what is cut out of that is less.
   if (light.kind == kLightSpot) light.kind = kLightPoint;
   light.surface = kSurfaceNone;
@@ -55,7 +55,9 @@ float boundFlux(LightRecord light, const std::vector<ViewRecord>& views) {
         const vec3 flux = cellFlux(light, view, film(x), film(y), 1.0F / (kBoundCells * kBoundCells));
         sum += std::max({flux.x, flux.y, flux.z});
       }
-  return kBoundMargin * sum;
+  vec3 weights(0.0F);
+  for (const Band& band : bands) weights += glm::abs(band.weight);
+  return kBoundMargin * sum * std::max({weights.x, weights.y, weights.z});
 }
 
 std::uint32_t countOf(const std::vector<ViewRecord>& views) { return static_cast<std::uint32_t>(views.size()); }
@@ -79,6 +81,7 @@ CausticMap::CausticMap(const RealtimeInputs& inputs, const CausticMapSettings& s
                     .grid_width = settings.grid,
                     .grid_height = settings.grid,
                     .band_count = 1};
+  if (inputs.buffers.traits().specular.disperses) bands_ = makeBands(static_cast<int>(settings.bands));
   makeSources();
 }
 
@@ -90,7 +93,8 @@ void CausticMap::makeSources() {
   for (std::size_t i = 0; i < draws.size(); ++i) {
     all_.push_back(i);
     if (draws[i].generates) generators_.push_back(i);
-    if (draws[i].receives && !draws[i].generates) receivers_.push_back(i);
+    // What catches nothing still stops light.
+    if (!draws[i].generates) receivers_.push_back(i);
   }
   generator_bounds_ = generatorBounds(inputs_.scene, inputs_.specular_alpha);
   scene_bounds_ = inputs_.scene.bounds();
@@ -125,7 +129,8 @@ std::vector<CausticMap::Point> CausticMap::choosePoints(std::uint32_t sample) {
     std::optional<LightView> view = lights_->make(i, sample);
     if (!view) continue;
     if (!view->varies) {
-      points.push_back({*view, &source, boundFlux(view->light, emissionViews(view->light)), 1.0F, source.is_new});
+      points.push_back(
+          {*view, &source, boundFlux(view->light, emissionViews(view->light), bands_), 1.0F, source.is_new});
       source.is_new = false;
       continue;
     }
@@ -134,8 +139,8 @@ std::vector<CausticMap::Point> CausticMap::choosePoints(std::uint32_t sample) {
     for (std::uint32_t k = 0; k < count; ++k) {
       view = lights_->make(i, sample * count + k);
       if (!view) continue;
-      points.push_back(
-          {*view, &source, boundFlux(view->light, emissionViews(view->light)), 1.0F / static_cast<float>(count), true});
+      points.push_back({*view, &source, boundFlux(view->light, emissionViews(view->light), bands_),
+                        1.0F / static_cast<float>(count), true});
     }
   }
   return points;
@@ -161,9 +166,14 @@ void CausticMap::record(gpu::CommandRecorder& recorder, const RealtimeSample& sa
     if (!pictures) pictures = std::make_unique<Pictures>();
     if (point.is_new) recordPictures(recorder, point.view, *pictures);
     if (pictures->emission.empty()) continue;
+    const auto into = [&](const DepositSurfaces& surfaces, std::uint32_t views, float weight, const FluxMap& map) {
+      follow(recorder, sample.index, point, nullptr, [&] {
+        deposit(views).record(recorder, photons_, surfaces, weight, settings_.splat_radius, inputs_.buffers.sampler(),
+                              map);
+      });
+    };
     if (into_pixels) {
-      recordPhotons(recorder, sample, point, sample.weight * point.weight, pixel_deposit_->surfaces(sample), 1,
-                    pixel_deposit_->map());
+      into(pixel_deposit_->surfaces(sample), 1, sample.weight * point.weight, pixel_deposit_->map());
       continue;
     }
     const std::uint32_t views = point.view.light.view_count;
@@ -173,8 +183,9 @@ void CausticMap::record(gpu::CommandRecorder& recorder, const RealtimeSample& sa
       map = FluxMap(inputs_.device, size, size, views, directions_);
     }
     map.clear(recorder, point.most_flux);
-    const DepositSurfaces surfaces{pictures->receivers->views(), pictures->receivers->surfaces(), 1};
-    recordPhotons(recorder, sample, point, 1.0F, surfaces, views, map);
+    const DepositSurfaces surfaces{pictures->receivers->views(), pictures->receivers->surfaces(),
+                                   settings_.receiver_layers};
+    into(surfaces, views, 1.0F, map);
     lookUp(sample.surfaces.isForeign(), views).record(recorder, sample, sample.weight * point.weight, surfaces, map);
   }
   if (into_pixels) pixel_deposit_->finish(recorder, sample);
@@ -191,30 +202,62 @@ void CausticMap::recordPictures(gpu::CommandRecorder& recorder, const LightView&
   const std::uint32_t size = map_views > 1 ? settings_.map_size : settings_.sun_map_size;
   makeRoom(pictures.first, inputs_, settings_.grid, views, 1);
   makeRoom(pictures.generators, inputs_, settings_.grid, views, settings_.layers);
-  makeRoom(pictures.receivers, inputs_, size, map_views, 1);
+  makeRoom(pictures.receivers, inputs_, size, map_views, settings_.receiver_layers);
   pictures.first->record(recorder, pictures.emission, all_);
   pictures.generators->record(recorder, pictures.emission, generators_);
   pictures.receivers->record(recorder, view.views, receivers_);
 }
 
-void CausticMap::recordPhotons(gpu::CommandRecorder& recorder, const RealtimeSample& sample, const Point& point,
-                               float weight, const DepositSurfaces& surfaces, std::uint32_t map_views,
-                               const FluxMap& map) {
+void CausticMap::follow(gpu::CommandRecorder& recorder, std::uint32_t sample, const Point& point, PhotonLedger* ledger,
+                        const std::function<void()>& deposit_photons) {
   const Pictures& pictures = *point.source->pictures;
   const LightPictures followed{pictures.emission, generator_bounds_,    scene_bounds_,      point.view.views,
                                *pictures.first,   *pictures.generators, *pictures.receivers};
-  Sampler sampler(inputs_.seed, kCellStream, sample.index);
+  Sampler sampler(inputs_.seed, kCellStream, sample);
+  const std::uint32_t last = 1 + settings_.internal_reflections;
   TransportSettings transport{.grid = settings_.grid,
                               // The first sample is that of the cells' middles, as a single picture should be.
-                              .offset = sample.index == 0 ? vec2(0.5F) : sampler.next2D(),
+                              .offset = sample == 0 ? vec2(0.5F) : sampler.next2D(),
                               .max_events = settings_.max_events,
-                              .iterations = settings_.iterations};
-  for (std::uint32_t v = 0; v < countOf(pictures.emission); ++v)
-    for (transport.branch = 0; transport.branch <= 1 + settings_.internal_reflections; ++transport.branch) {
-      transport_.record(recorder, followed, pictures.light, 0, v, transport, photons_);
-      deposit(map_views).record(recorder, photons_, surfaces, weight, settings_.splat_radius, inputs_.buffers.sampler(),
-                                map);
-    }
+                              .iterations = settings_.iterations,
+                              .account = ledger ? &ledger->account() : nullptr};
+  for (transport.band_index = 0; transport.band_index < bands_.size(); ++transport.band_index) {
+    transport.band = bands_[transport.band_index];
+    for (std::uint32_t v = 0; v < countOf(pictures.emission); ++v)
+      for (transport.branch = 0; transport.branch <= last; ++transport.branch) {
+        transport.is_last = transport.branch == last;
+        transport_.record(recorder, followed, pictures.light, 0, v, transport, photons_);
+        if (ledger) ledger->record(recorder, photons_, photons_.capacity(), 0, transport.branch);
+        deposit_photons();
+      }
+  }
+}
+
+std::vector<Ledger> CausticMap::account() {
+  std::vector<Ledger> ledgers;
+  if (generator_bounds_.empty()) return ledgers;
+  for (std::size_t i = 0; i < sources_.size(); ++i) {
+    ledgers.emplace_back();
+    ledgers.back().light = i < inputs_.scene.lights.size() ? inputs_.scene.lights[i].name : "emission";
+  }
+  constexpr std::uint32_t kMostViews = 6;
+  const auto bands = static_cast<std::uint32_t>(bands_.size());
+  PhotonLedger ledger(inputs_.device, photons_.capacity(), bands * kMostViews * (2 + settings_.internal_reflections));
+  gpu::CommandRecorder recorder(inputs_.device);
+  for (const Point& point : choosePoints(0)) {
+    std::unique_ptr<Pictures>& pictures = point.source->pictures;
+    if (!pictures) pictures = std::make_unique<Pictures>();
+    recorder.begin();
+    if (point.is_new) recordPictures(recorder, point.view, *pictures);
+    ledger.begin();
+    follow(recorder, 0, point, &ledger, [] {});
+    recorder.submit();
+    recorder.wait();
+    Ledger of_point = ledger.read(0);
+    of_point.scale(point.weight);
+    ledgers[static_cast<std::size_t>(point.source - sources_.data())].add(of_point);
+  }
+  return ledgers;
 }
 
 namespace {
@@ -252,6 +295,13 @@ std::vector<ParamSpec> makeParams() {
        "",
        "surfaces behind one another, as seen from the light, that light is followed through",
        {}},
+      {"receiver-layers",
+       number(defaults.receiver_layers),
+       1,
+       16,
+       "",
+       "surfaces behind one another, as seen from the light, that light may end on",
+       {}},
       {"internal-reflections",
        number(defaults.internal_reflections),
        0,
@@ -260,6 +310,13 @@ std::vector<ParamSpec> makeParams() {
        "inside a solid that are followed before light leaves it",
        {}},
       {"iterations", number(defaults.iterations), 1, 64, "", "to find where a ray meets a surface", {}},
+      {"bands",
+       number(defaults.bands),
+       1,
+       12,
+       "",
+       "of wavelength that are followed, where a material disperses light",
+       {}},
       {"points", number(defaults.points), 1, 256, "", "that a light with a size is taken for, each sample", {}},
       {"directions", number(defaults.directions), 1, 1024, "", "that the environment is taken for, each sample", {}},
       {"reconstruct",
@@ -289,8 +346,10 @@ CausticMapSettings makeSettings(const ParamSet& params) {
   settings.map_size = count("map-size");
   settings.sun_map_size = count("sun-map-size");
   settings.layers = count("layers");
+  settings.receiver_layers = count("receiver-layers");
   settings.internal_reflections = count("internal-reflections");
   settings.iterations = count("iterations");
+  settings.bands = count("bands");
   settings.points = count("points");
   settings.directions = count("directions");
   if (params.getString("reconstruct") == "splats") settings.reconstruction = Reconstruction::kSplats;
@@ -321,6 +380,7 @@ Technique makeCausticMapTechnique() {
   technique.on_vulkan = true;
   technique.params = makeParams();
   technique.make_realtime = makeCausticMap;
+  technique.account = [](RealtimeTechnique& drawn) { return static_cast<CausticMap&>(drawn).account(); };
   technique.render = renderCausticMap;
   return technique;
 }

@@ -3,14 +3,17 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <memory>
 #include <vector>
 
+#include "core/spectrum.h"
 #include "frame/deposit.h"
 #include "frame/light_views.h"
 #include "frame/pixel_deposit.h"
 #include "frame/realtime_technique.h"
 #include "techniques/caustic_map/look_up.h"
+#include "techniques/caustic_map/photon_ledger.h"
 #include "techniques/caustic_map/transport.h"
 #include "techniques/technique.h"
 
@@ -26,7 +29,8 @@ struct CausticMapSettings {
   std::uint32_t grid = 256;      ///< cells along a side of each of the emission's views
   std::uint32_t map_size = 256;  ///< texels along a side of each face of a point's cube map
   std::uint32_t sun_map_size = 1024;
-  std::uint32_t layers = 4;  ///< surfaces behind one another that light is followed through, from the light
+  std::uint32_t layers = 4;           ///< surfaces behind one another that light is followed through, from the light
+  std::uint32_t receiver_layers = 2;  ///< likewise that it may end on
   std::uint32_t internal_reflections = 2;
   std::uint32_t iterations = 8;   ///< to find where a ray meets a surface
   std::uint32_t max_events = 8;   ///< of class S, on the way of a photon
@@ -49,6 +53,10 @@ class CausticMap : public RealtimeTechnique {
   void lightChanged(std::size_t index) override;
   void objectsMoved() override;
 
+  /// What becomes of the light of the first sample, by source. Waits for the device.
+  /// @throws ResourceError
+  std::vector<Ledger> account();
+
  private:
   struct Pictures;
   /// What is followed in one sample of one source of light.
@@ -59,9 +67,10 @@ class CausticMap : public RealtimeTechnique {
   std::vector<Point> choosePoints(std::uint32_t sample);
   std::vector<ViewRecord> emissionViews(const LightRecord& light) const;
   void recordPictures(gpu::CommandRecorder& recorder, const LightView& view, Pictures& pictures);
-  /// From the light to `map`.
-  void recordPhotons(gpu::CommandRecorder& recorder, const RealtimeSample& sample, const Point& point, float weight,
-                     const DepositSurfaces& surfaces, std::uint32_t map_views, const FluxMap& map);
+  /// From the light to where its photons end, one view, branch and band after the other.
+  /// @param ledger  null: nobody asks what becomes of them
+  void follow(gpu::CommandRecorder& recorder, std::uint32_t sample, const Point& point, PhotonLedger* ledger,
+              const std::function<void()>& deposit_photons);
   LookUp& lookUp(bool foreign, std::uint32_t views);
   Deposit& deposit(std::uint32_t views);
 
@@ -70,6 +79,7 @@ class CausticMap : public RealtimeTechnique {
   bool directions_;                                        ///< surfaces ask where light comes from
   std::vector<std::size_t> all_, generators_, receivers_;  ///< of the scene's draws
   Bounds generator_bounds_, scene_bounds_;
+  std::vector<Band> bands_{{0.0F, vec3(1.0F)}};  ///< one for all where nothing disperses light
   std::unique_ptr<LightViews> lights_;
   Transport transport_;
   PhotonBuffer photons_;

@@ -1,9 +1,9 @@
 // What a ray meets first among surfaces that are known as pictures: layers of views (frame/surface_layers.h).
 //
 // The places in a picture nearest to the ray are looked up one after the other, each by the plane of the one before:
-// Newton's method on the distance along the ray, as [shah-caustics-mapping] §III-C does it with the distance alone. Where a surface
-// bends slowly against the size of a texel it converges within three or four steps, and then what is met is the very
-// triangle's plane, not what the picture was rounded to.
+// Newton's method on the distance along the ray, as [shah-caustics-mapping] §III-C does it with the distance alone.
+// Where a surface bends slowly against the size of a texel it converges within three or four steps. From the triangle
+// that is shown there the surface itself leads on to the one that is met: the picture need not show it.
 #ifndef NEPHROID_LAYERED_VIEW_GLSL
 #define NEPHROID_LAYERED_VIEW_GLSL
 
@@ -17,6 +17,12 @@ struct Pictures {
   float size;        // texels along a side
 };
 
+/// The triangle on which a ray starts.
+struct Start {
+  uint instance;
+  uint triangle;
+};
+
 /// Place in the pictures.
 struct PicturePlace {
   bool inside;
@@ -26,7 +32,13 @@ struct PicturePlace {
 };
 
 /// Distances between two steps, in texels, from which on they count as one place.
-const float kConverged = 1.0;
+const float kConverged = 3.0;
+
+/// Triangles from the one that is shown to the one that is met.
+const uint kWalk = 16u;
+
+/// A ray this near to an edge, relative to the triangle, meets both sides' triangles.
+const float kOnEdge = 1e-5;
 
 /// Steps between the ends of a ray where Newton's method finds nothing.
 const uint kSteps = 16u;
@@ -56,13 +68,37 @@ float leaveBox(Ray ray, vec3 lower, vec3 upper) {
   return max(min(far.x, min(far.y, far.z)), 0.0);
 }
 
-/// Where a ray meets the plane of a triangle; its weights may lie outside of it, by a texel or two.
-Met meetPlaneOf(Ray ray, uvec2 seen) {
+/// From the triangle that a picture shows to the one that the ray meets, over the edge that it misses most by, again and
+/// again: what was converged to is a texel or two away at most. At the outline of something round, where a texel shows
+/// one of many triangles, it is a few steps.
+/// Where very many triangles meet, as at the poles of a ball, the way may be too long: then the plane of the first one
+/// serves, if the ray meets it near enough.
+/// @param near  m
+/// @return      nothing if the surface ends before, or bends away
+Met walkToRay(Ray ray, uvec2 seen, vec3 place, float near) {
+  Met none = Met(kFarAway, 0.0, 0.0, kNowhere, 0u), first = none;
   InstanceRecord instance = fetchInstance(seen.x - 1u);
-  Triangle corners = toWorld(instance, fetchTriangle(instance.first_triangle + seen.y));
-  RayTriangle hit = intersectPlaneOf(corners, ray.origin, ray.dir);
-  if (hit.size <= 0.0) return Met(kFarAway, 0.0, 0.0, kNowhere, 0u);
-  return Met(hit.t / hit.size, hit.u / hit.size, hit.v / hit.size, seen.x - 1u, seen.y);
+  uint triangle = seen.y, before = kNowhere;
+  for (uint i = 0u; i < kWalk; ++i) {
+    Triangle corners = toWorld(instance, fetchTriangle(instance.first_triangle + triangle));
+    RayTriangle hit = intersectPlaneOf(corners, ray.origin, ray.dir);
+    float w = hit.size - hit.u - hit.v;
+    float worst = min(min(hit.u, hit.v), w);
+    float tolerance = kOnEdge * hit.size;
+    uvec4 beyond = texelFetch(neighbour_table, texelOf(instance.first_triangle + triangle), 0);
+    // The edges of weights v, w and u.
+    uint next = hit.v == worst ? beyond.x : w == worst ? beyond.y : beyond.z;
+    // Between two triangles that both say that it is just beyond the other, it is on their edge.
+    if (next == before && before != kNowhere) tolerance *= 64.0;
+    if (hit.size > 0.0 && worst >= -tolerance)
+      return Met(hit.t / hit.size, hit.u / hit.size, hit.v / hit.size, seen.x - 1u, triangle);
+    if (i == 0u && hit.size > 0.0) first = Met(hit.t / hit.size, hit.u / hit.size, hit.v / hit.size, seen.x - 1u, triangle);
+    if (next == kNowhere) return none;
+    if (next == before) break;
+    before = triangle;
+    triangle = next;
+  }
+  return first.t > near && length(ray.origin + first.t * ray.dir - place) <= near ? first : none;
 }
 
 /// What a picture shows of a place.
@@ -87,32 +123,20 @@ Look lookAt(vec3 place, Pictures pictures, usampler2DArray seen_layers, sampler2
   return look;
 }
 
-/// Does the surface go on beyond a texel, past its triangle's edge? There the next texel shows the same surface, or one
-/// that it bends into; at an edge of the object it shows nothing, or something else.
-bool goesOn(vec3 hit, Look look, Pictures pictures, usampler2DArray seen_layers, sampler2DArray surfaces, uint layer) {
-  PicturePlace at = placeInPictures(pictures, hit);
-  PicturePlace shown = placeInPictures(pictures, look.surface.xyz);
-  vec2 outward = at.texels - shown.texels;
-  float most = max(max(abs(outward.x), abs(outward.y)), 1e-6);
-  vec2 next = shown.texels + outward / most;
-  if (!at.inside || min(next.x, next.y) < 0.0 || max(next.x, next.y) >= pictures.size) return false;
-  ivec3 texel = ivec3(ivec2(next), at.view * pictures.layer_count + layer);
-  if (texelFetch(seen_layers, texel, 0).x == 0u) return false;
-  vec4 surface = texelFetch(surfaces, texel, 0);
-  vec3 normal = unpackUnitVector(floatBitsToUint(surface.w)), before = unpackUnitVector(floatBitsToUint(look.surface.w));
-  return dot(normal, before) > 0.5 && abs(dot(normal, hit - surface.xyz)) <= look.texel_size;
-}
-
-/// Newton's method from a place on the ray. @return  nothing if it does not converge, or where the ray starts
-Met approach(Ray ray, float start, Pictures pictures, usampler2DArray seen_layers, sampler2DArray surfaces, uint layer,
-             uint iterations) {
-  Met none = Met(kFarAway, 0.0, 0.0, kNowhere, 0u);
-  float t = start, last = start;
-  for (uint i = 0u; i < iterations; ++i) {
+/// Newton's method from a place on the ray, and from where that ends over the surface to the ray.
+/// @return  nothing if it leads nowhere, or to where the ray starts
+Met approach(Ray ray, float first, Start start, Pictures pictures, usampler2DArray seen_layers,
+             sampler2DArray surfaces, uint layer, uint iterations) {
+  float t = first, last = first;
+  uvec2 seen = uvec2(0u);
+  vec3 place = vec3(0.0);
+  float texel_size = 0.0;
+  bool converged = false, lost = false;
+  for (uint i = 0u; i < iterations && !converged && !lost; ++i) {
     Look look = lookAt(ray.origin + t * ray.dir, pictures, seen_layers, surfaces, layer);
     if (!look.shown) {
       // Too far, or past an edge: half-way back to where something was.
-      if (i == 0u) return none;
+      lost = i == 0u;
       t = 0.5 * (t + last);
       continue;
     }
@@ -122,43 +146,47 @@ Met approach(Ray ray, float start, Pictures pictures, usampler2DArray seen_layer
     // Seen edge-on a plane says nothing; its distance does, as in the paper.
     float next = abs(along) > 0.02 ? dot(normal, to) / along : length(to);
     if (next < 0.0) next = length(to);
+    converged = i > 0u && abs(next - t) <= kConverged * look.texel_size;
+    seen = look.seen;
+    place = look.surface.xyz;
+    texel_size = look.texel_size;
     last = t;
-    if (abs(next - t) <= kConverged * look.texel_size && i > 0u) {
-      Met met = meetPlaneOf(ray, look.seen);
-      // Not the surface that the ray starts from.
-      if (met.instance == kNowhere || met.t <= 2.0 * look.texel_size) return none;
-      bool is_inside = min(min(met.u, met.v), 1.0 - met.u - met.v) >= -1e-4;
-      vec3 hit = ray.origin + met.t * ray.dir;
-      if (!is_inside && !goesOn(hit, look, pictures, seen_layers, surfaces, layer)) return none;
-      return met;
-    }
     t = next;
   }
-  return none;
+  Met none = Met(kFarAway, 0.0, 0.0, kNowhere, 0u);
+  if (seen.x == 0u) return none;
+  Met met = walkToRay(ray, seen, place, 2.0 * texel_size);
+  bool starts_there = met.instance == start.instance && met.triangle == start.triangle;
+  // So near to where it starts it can only be the surface that it starts from, by rounding.
+  return met.t > 1e-2 * texel_size && !starts_there ? met : none;
 }
 
 /// Along a ray, the surface of one layer: by Newton's method, and where that finds none by steps, looking for where the
 /// ray passes from one side of what is seen to the other, and Newton's method there.
 /// @param t_end   where the ray leaves the scene
 /// @param hidden  set if it leaves the pictures before
-Met meetLayer(Ray ray, float t_end, Pictures pictures, usampler2DArray seen_layers, sampler2DArray surfaces, uint layer,
+Met meetLayer(Ray ray, float t_end, Start start, Pictures pictures, usampler2DArray seen_layers, sampler2DArray surfaces, uint layer,
               uint iterations, inout bool hidden) {
-  Met met = approach(ray, 0.0, pictures, seen_layers, surfaces, layer, iterations);
+  Met met = approach(ray, 0.0, start, pictures, seen_layers, surfaces, layer, iterations);
   if (met.instance != kNowhere) return met;
   Look before = lookAt(ray.origin, pictures, seen_layers, surfaces, layer);
   float t_before = 0.0;
-  for (uint i = 1u; i <= kSteps && met.instance == kNowhere; ++i) {
-    float t = t_end * float(i) / float(kSteps);
+  // A step more than to where the ray leaves the scene: what it meets there may bound the scene.
+  for (uint i = 1u; i <= kSteps + 1u && met.instance == kNowhere; ++i) {
+    float share_of_way = float(i) / float(kSteps), t = t_end * share_of_way * share_of_way;
     Look look = lookAt(ray.origin + t * ray.dir, pictures, seen_layers, surfaces, layer);
-    if (!look.inside) {
-      hidden = true;
-      return met;
-    }
-    if (before.shown && look.shown && (before.behind > 0.0) != (look.behind > 0.0)) {
-      float share = before.behind / (before.behind - look.behind);
-      met = approach(ray, mix(t_before, t, share), pictures, seen_layers, surfaces, layer, iterations);
+    bool crosses = before.shown && look.shown && (before.behind > 0.0) != (look.behind > 0.0);
+    // Or it passes the outline of something round, which bends away there.
+    if (crosses || before.shown != look.shown) {
+      float share = crosses ? before.behind / (before.behind - look.behind) : before.shown ? 0.0 : 1.0;
+      met = approach(ray, mix(t_before, t, share), start, pictures, seen_layers, surfaces, layer, iterations);
       // Past an edge nothing is met.
-      if (met.t < t_before || met.t > t + look.texel_size) met = Met(kFarAway, 0.0, 0.0, kNowhere, 0u);
+      if (met.t < t_before || met.t > t + max(look.texel_size, before.texel_size))
+        met = Met(kFarAway, 0.0, 0.0, kNowhere, 0u);
+    }
+    if (!look.inside) {
+      hidden = hidden || (i <= kSteps && met.instance == kNowhere);
+      return met;
     }
     before = look;
     t_before = t;
@@ -167,11 +195,11 @@ Met meetLayer(Ray ray, float t_end, Pictures pictures, usampler2DArray seen_laye
 }
 
 /// The nearest over all layers.
-Met meetLayers(Ray ray, float t_end, Pictures pictures, usampler2DArray seen_layers, sampler2DArray surfaces,
+Met meetLayers(Ray ray, float t_end, Start start, Pictures pictures, usampler2DArray seen_layers, sampler2DArray surfaces,
                uint iterations, inout bool hidden) {
   Met best = Met(kFarAway, 0.0, 0.0, kNowhere, 0u);
   for (uint layer = 0u; layer < pictures.layer_count; ++layer) {
-    Met met = meetLayer(ray, t_end, pictures, seen_layers, surfaces, layer, iterations, hidden);
+    Met met = meetLayer(ray, t_end, start, pictures, seen_layers, surfaces, layer, iterations, hidden);
     if (met.t < best.t) best = met;
   }
   return best;

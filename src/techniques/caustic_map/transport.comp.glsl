@@ -12,11 +12,13 @@ layout(push_constant, scalar) uniform Push { TransportPush push; };
 #define max_events push.max_events
 
 layout(scalar, set = 0, binding = 7) readonly buffer LayerViews { ViewRecord layer_views[]; };
+layout(set = 0, binding = 16) uniform usampler2D neighbour_table;
 #include "techniques/caustic_map/layered_view.glsl"
 #include "frame/emission.shared.h"
 #define NEPHROID_PHOTON_BINDING 14
 #include "frame/photons.glsl"
 
+layout(constant_id = 20) const bool kAccounts = false;  // keeps the ledger's accounts: costs time
 layout(local_size_x = 8, local_size_y = 8) in;
 layout(scalar, set = 0, binding = 8) readonly buffer Lights { LightRecord lights[]; };
 layout(set = 0, binding = 9) uniform usampler2DArray first_seen;  // of the emission's views: all that there is
@@ -25,30 +27,91 @@ layout(set = 0, binding = 11) uniform sampler2DArray generator_surfaces;
 layout(set = 0, binding = 12) uniform usampler2DArray receiver_seen;
 layout(set = 0, binding = 13) uniform sampler2DArray receiver_surfaces;
 
+layout(scalar, set = 0, binding = 15) writeonly buffer Accounts { PhotonAccount accounts[]; };
+
 /// A photon on its way.
 struct Flight {
   Path path;
   uint chain;
   uint outcome;
+  uint chances;         // to leave what it is inside of, that it passed
+  bool decided;         // the branch has nothing more to say
+  int closed;           // closed solids that it is inside of
   float last_distance;  // m, since the last event
+  PhotonAccount account;
 };
 
-/// Goes on along the branch: reflected or let through at the first surface; inside, reflected so many times before it
-/// leaves. Where light is reflected totally there is no choice.
-Way chooseBranch(Way reflected, Way transmitted, uint events, bool is_inside) {
-  if (events == 0u) return push.branch == 0u ? reflected : transmitted;
+/// Which way a branch goes on.
+struct Choice {
+  Way way;
+  vec3 not_followed;  // weight of the other way if no branch takes it
+  bool is_chance;     // to leave
+};
+
+/// Goes on along the branch, so that no two branches take the same path: at the first event one is reflected and the
+/// others are let in; of those, branch b leaves at its b-th chance, that is where something is let through from the
+/// inside, and is reflected at those before. Total reflection is no chance and is followed by all. Elsewhere (at what is
+/// met after leaving, or inside) the way that carries more is followed, and the other is lost.
+Choice chooseWay(Way reflected, Way transmitted, uint events, bool is_inside, inout Flight flight) {
+  if (events == 0u) {
+    flight.decided = push.branch == 0u;
+    vec3 rest = flight.decided && push.is_last != 0u ? transmitted.weight : vec3(0.0);
+    return Choice(flight.decided ? reflected : transmitted, rest, false);
+  }
   bool can_leave = largest(transmitted.weight) > 0.0;
-  if (!is_inside) return largest(reflected.weight) >= largest(transmitted.weight) ? reflected : transmitted;
-  return can_leave && events >= push.branch ? transmitted : reflected;
+  if (is_inside && can_leave && !flight.decided) {
+    ++flight.chances;
+    flight.decided = flight.chances == push.branch;
+    vec3 rest = flight.decided && push.is_last != 0u ? reflected.weight : vec3(0.0);
+    return Choice(flight.decided ? transmitted : reflected, rest, true);
+  }
+  bool reflects = largest(reflected.weight) >= largest(transmitted.weight);
+  return Choice(reflects ? reflected : transmitted, reflects ? transmitted.weight : reflected.weight, false);
 }
 
-void meetGenerator(inout Flight flight, Met met) {
+/// Whether what becomes of the flight from here on is this branch's: branches b > k share the way past the first k
+/// chances, and what ends there is the one of branch k + 1.
+bool isOwn(Flight flight) { return flight.decided || push.branch == flight.chances + 1u; }
+
+/// Follows the flight to a surface, through what absorbs.
+Encounter arrive(inout Flight flight, Met met) {
   bool emission_seen;
-  uint events = flight.path.events;
+  vec3 before = flight.path.throughput;
   Encounter e = encounter(flight.path, met, emission_seen);
+  bool own = flight.path.events == 0u ? push.branch == 0u : isOwn(flight);
+  if (kAccounts && own) flight.account.absorbed += before - flight.path.throughput;
+  return e;
+}
+
+/// Enters into the account where the rest stays of what a surface does not send along a way that is followed.
+void accountFor(inout Flight flight, Encounter e, SurfaceOptics optics, Scattered scattered, Way reflected,
+                Way transmitted, Choice choice) {
+  vec3 flux = flight.path.throughput;
+  bool is_first = flight.path.events == 0u;
+  bool own = is_first ? push.branch == 0u : choice.is_chance ? flight.decided : isOwn(flight);
+  if (!own) return;
+  float cos_o = max(-dot(flight.path.ray.dir, e.surface.shading), 0.0);
+  float fresnel = interfaceFresnel(optics, cos_o);
+  vec3 interface_share = interfaceReflectance(optics, cos_o, fresnel) + interfaceTransmittance(optics, fresnel);
+  vec3 scattered_share = scattered.reflected_weight + scattered.transmitted_weight / radianceScale(optics);
+  vec3 rest = flux * (1.0 - interface_share);
+  if (e.material.base_weight <= 0.0) flight.account.absorbed += rest;
+  else if (is_first) flight.account.blocked += rest;
+  else flight.account.diffuse += rest;
+  flight.account.microfacet += flux * (interface_share - scattered_share);
+  flight.account.normal += flux * (scattered_share - reflected.weight - transmitted.weight);
+  if (choice.is_chance) flight.account.internal += flux * choice.not_followed;
+  else flight.account.other_way += flux * choice.not_followed;
+}
+
+/// Refracts or reflects the flight at a surface.
+void bend(inout Flight flight, Met met) {
+  uint events = flight.path.events;
+  Encounter e = arrive(flight, met);
   SurfaceOptics optics = e.material.optics;
   if (e.crossing.is_solid && !e.boundary.is_event) {
     passOn(flight.path, e.surface, e.crossing);
+    if (flight.path.ended) flight.outcome = kOutcomeInterior;
     return;
   }
   Medium from = fetchMedium(e.boundary.from), to = fetchMedium(e.boundary.to);
@@ -58,27 +121,64 @@ void meetGenerator(inout Flight flight, Met met) {
   Way reflected = reflection(scattered, e.surface), transmitted = transmission(scattered, e.surface);
   // Of flux, not of radiance: it does not know the index.
   transmitted.weight /= radianceScale(optics);
-  Way way = chooseBranch(reflected, transmitted, events, e.crossing.is_solid && !e.crossing.entering);
-  flight.chain = hashChain(flight.chain, 2u * met.instance + (way.through ? 1u : 0u));
-  take(flight.path, way, e.surface, e.crossing, false);
-  if (largest(flight.path.throughput) <= 0.0) flight.outcome = events == 0u ? kOutcomeNoWay : kOutcomeAbsorbed;
+  Choice choice = chooseWay(reflected, transmitted, events, e.crossing.is_solid && !e.crossing.entering, flight);
+  if (kAccounts) accountFor(flight, e, optics, scattered, reflected, transmitted, choice);
+  flight.chain = hashChain(flight.chain, 2u * met.instance + (choice.way.through ? 1u : 0u));
+  take(flight.path, choice.way, e.surface, e.crossing, false);
+  if (largest(abs(flight.path.throughput)) <= 0.0) flight.outcome = events == 0u ? kOutcomeNoWay : kOutcomeAbsorbed;
   else if (flight.path.ended) flight.outcome = flight.path.events >= max_events ? kOutcomeBounceLimit : kOutcomeInterior;
+}
+
+int countSolids(Interior interior) {
+  uvec4 listed = min(interior.solids, uvec4(1u));
+  return int(listed.x + listed.y + listed.z + listed.w);
+}
+
+void meetGenerator(inout Flight flight, Met met) {
+  int solids = countSolids(flight.path.interior);
+  bend(flight, met);
+  bool is_closed = (fetchInstance(met.instance).flags & kInstanceClosed) != 0u;
+  flight.closed += is_closed ? countSolids(flight.path.interior) - solids : 0;
+}
+
+/// Follows the flight to infinity.
+void depart(inout Flight flight) {
+  vec3 before = flight.path.throughput;
+  flight.path.throughput *= transmittanceOf(mediumOf(flight.path.interior, kNowhere), kFarAway);
+  if (kAccounts && isOwn(flight)) flight.account.absorbed += before - flight.path.throughput;
 }
 
 /// The next surface, or how the flight ends.
 Met meetNext(inout Flight flight, Pictures generators, Pictures receivers) {
   bool hidden = false, hidden_receiver = false;
   Ray ray = flight.path.ray;
+  Start start = Start(flight.path.instance, flight.path.triangle);
   float t_end = leaveBox(ray, push.generator_lower, push.generator_upper);
-  Met met = meetLayers(ray, t_end, generators, generator_seen, generator_surfaces, push.iterations, hidden);
+  Met met = meetLayers(ray, t_end, start, generators, generator_seen, generator_surfaces, push.iterations, hidden);
   t_end = leaveBox(ray, push.scene_lower, push.scene_upper);
-  Met receiver = meetLayers(ray, t_end, receivers, receiver_seen, receiver_surfaces, push.iterations, hidden_receiver);
+  Met receiver = meetLayers(ray, t_end, start, receivers, receiver_seen, receiver_surfaces, push.iterations, hidden_receiver);
+  // From inside a closed solid there is no way but through its surface: a receiver farther on is not met.
+  bool is_enclosed = flight.closed > 0 && met.instance == kNowhere;
   if (receiver.t < met.t) met = receiver;
-  if (met.instance == kNowhere) {
-    flight.outcome = hidden || hidden_receiver ? kOutcomeHidden : kOutcomeEscaped;
+  if (is_enclosed || met.instance == kNowhere) {
+    flight.outcome = is_enclosed || hidden || hidden_receiver ? kOutcomeHidden : kOutcomeEscaped;
     flight.path.ended = true;
+    if (flight.outcome == kOutcomeEscaped) depart(flight);
   }
   return met;
+}
+
+/// Ends that another branch has to say: before the first event the first branch, else see isOwn.
+void leaveToOthers(inout Flight flight) {
+  bool met_generator = flight.path.events > 0u;
+  if (met_generator ? !isOwn(flight) : push.branch > 0u) {
+    flight.path.throughput = vec3(0.0);
+    if (met_generator) flight.outcome = kOutcomeNoWay;
+  }
+  if (any(isnan(flight.path.throughput)) || any(isinf(flight.path.throughput))) {
+    flight.path.throughput = vec3(0.0);
+    flight.outcome = kOutcomeNumerical;
+  }
 }
 
 Photon describe(Flight flight, vec3 place, uint index) {
@@ -89,7 +189,7 @@ Photon describe(Flight flight, vec3 place, uint index) {
   photon.position = place;
   photon.path_length = flight.last_distance;
   photon.direction = flight.path.ray.dir;
-  photon.light_band_flags = packLightBandFlags(push.light, 0u, flags);
+  photon.light_band_flags = packLightBandFlags(push.light, push.band, flags);
   photon.flux = flight.path.throughput;
   photon.index = index;
   photon.chain = flight.chain;
@@ -104,16 +204,20 @@ void main() {
   ViewRecord view = layer_views[push.view];
   vec2 film = (vec2(cell) + push.offset) / float(push.grid) * 2.0 - 1.0;
   EmissionRay emitted = emissionRay(view, film.x, film.y);
-  vec3 flux = cellFlux(lights[push.light], view, film.x, film.y, 1.0 / float(push.grid * push.grid));
+  vec3 flux = cellFlux(lights[push.light], view, film.x, film.y, 1.0 / float(push.grid * push.grid)) * push.band_weight;
   Ray ray = Ray(emitted.origin, emitted.dir);
-  Flight flight = Flight(Path(ray, flux, false, false, 0u, 0u, 0.0, kNowhere, 0u, kInTheOpen), 0u, kOutcomeDeposited, 0.0);
+  Path path = Path(ray, flux, false, false, 0u, 0u, push.wavelength_nm, kNowhere, 0u, kInTheOpen);
+  vec3 none = vec3(0.0);
+  PhotonAccount account = PhotonAccount(push.branch == 0u ? flux : none, none, none, none, none, none, none, none);
+  Flight flight = Flight(path, 0u, kOutcomeDeposited, 0u, false, 0, 0.0, account);
 
-  Pictures generators = Pictures(0u, push.generator_views, push.generator_layers, push.generator_size);
-  Pictures receivers = Pictures(push.generator_views, push.receiver_views, 1u, push.receiver_size);
+  uvec4 counts = (uvec4(push.pictures) >> uvec4(0u, 8u, 16u, 24u)) & 255u;
+  Pictures generators = Pictures(0u, counts.x, counts.y, push.generator_size);
+  Pictures receivers = Pictures(counts.x, counts.z, counts.w, push.receiver_size);
   ivec3 texel = ivec3(ivec2((film * 0.5 + 0.5) * push.generator_size), push.view);
   uvec2 seen = texelFetch(first_seen, texel, 0).xy;
   Met met = Met(kFarAway, 0.0, 0.0, kNowhere, 0u);
-  if (seen.x != 0u) met = meetPlaneOf(ray, seen);
+  if (seen.x != 0u) met = walkToRay(ray, seen, vec3(0.0), 0.0);
   if (met.instance == kNowhere) flight.outcome = kOutcomeMissed;
   else if ((fetchInstance(met.instance).flags & kInstanceGenerates) == 0u) flight.outcome = kOutcomeBlocked;
   flight.path.ended = flight.outcome != kOutcomeDeposited;
@@ -127,13 +231,15 @@ void main() {
     if ((fetchInstance(met.instance).flags & kInstanceGenerates) != 0u) {
       meetGenerator(flight, met);
     } else {
-      bool emission_seen;
       place = flight.path.ray.origin + met.t * flight.path.ray.dir;
-      encounter(flight.path, met, emission_seen);
+      arrive(flight, met);
       flight.chain = hashChain(flight.chain, 2u * met.instance);
       flight.path.ended = true;
     }
   }
   if (!flight.path.ended) flight.outcome = kOutcomeBounceLimit;
-  photons[cell.y * push.grid + cell.x] = describe(flight, place, cell.y * push.grid + cell.x);
+  leaveToOthers(flight);
+  uint index = cell.y * push.grid + cell.x;
+  photons[index] = describe(flight, place, index);
+  if (kAccounts) accounts[index] = flight.account;
 }

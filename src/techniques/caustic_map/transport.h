@@ -2,9 +2,11 @@
 #pragma once
 
 #include <cstdint>
+#include <map>
 #include <span>
 #include <vector>
 
+#include "core/spectrum.h"
 #include "frame/photon_buffer.h"
 #include "frame/scene_buffers.h"
 #include "frame/surface_layers.h"
@@ -20,16 +22,24 @@ struct LightPictures {
   std::span<const ViewRecord> receiver_views;  ///< of everything that light may reach
   const SurfaceLayers& first;                  ///< what the emission's views show of all there is; one layer
   const SurfaceLayers& generators;             ///< what they show of generators
-  const SurfaceLayers& receivers;              ///< what the others show of receivers; one layer
+  const SurfaceLayers& receivers;              ///< what the others show of all that is no generator, black things too
 };
 
 /// How light is followed.
 struct TransportSettings {
   std::uint32_t grid = 256;  ///< cells along a side of each of the emission's views
   vec2 offset{0.5F};         ///< of the photon in its cell, in [0, 1)²
-  std::uint32_t branch = 0;  ///< 0: reflected at the first surface; b >= 1: let in, and reflected b − 1 times inside
+  /// 0: reflected at the first surface; b >= 1: let in, and out again at the b-th place where something gets out. No
+  /// path is in two branches.
+  std::uint32_t branch = 0;
   std::uint32_t max_events = 8;
+  /// Part of the spectrum, of makeBands; wavelength 0: all of it as one, with the indices that materials say.
+  Band band{0.0F, vec3(1.0F)};
+  std::uint32_t band_index = 0;
   std::uint32_t iterations = 8;  ///< to find where a ray meets a surface
+  /// For the ledger (PhotonLedger::account): what stays on the way. Of no use without it, and it takes time.
+  const gpu::Buffer* account = nullptr;
+  bool is_last = false;  ///< no branch beyond this one is followed: for the account
 };
 
 /// Not thread-safe. Device and buffers must outlive it.
@@ -47,9 +57,12 @@ class Transport {
               std::uint32_t light, std::uint32_t view, const TransportSettings& settings, const PhotonBuffer& photons);
 
  private:
+  const gpu::ComputePipeline& pipelineFor(const TransportSettings& settings);
+
+  gpu::Device& device_;
   const SceneBuffers& buffers_;
-  gpu::ComputePipeline pipeline_;
-  gpu::Buffer views_;
+  std::map<std::vector<std::uint32_t>, gpu::ComputePipeline> pipelines_;  ///< by what they are compiled for
+  gpu::Buffer views_, no_account_;
 };
 
 }  // namespace nephroid

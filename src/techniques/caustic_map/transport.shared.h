@@ -9,28 +9,55 @@ NEPHROID_NAMESPACE_BEGIN
 /// Why a photon is not valid, in its flags above those of the record.
 NEPHROID_CONST uint kOutcomeShift = 3u;
 NEPHROID_CONST uint kOutcomeDeposited = 0u;
-NEPHROID_CONST uint kOutcomeMissed = 1u;      // met nothing at all
-NEPHROID_CONST uint kOutcomeBlocked = 2u;     // first met what is no generator
-NEPHROID_CONST uint kOutcomeEscaped = 3u;     // met nothing after a generator
-NEPHROID_CONST uint kOutcomeHidden = 4u;      // what it met is not in the pictures
+NEPHROID_CONST uint kOutcomeMissed = 1u;   // met nothing at all
+NEPHROID_CONST uint kOutcomeBlocked = 2u;  // first met what is no generator
+NEPHROID_CONST uint kOutcomeEscaped = 3u;  // met nothing after a generator
+NEPHROID_CONST uint kOutcomeHidden = 4u;   // what it met is not in the pictures
 NEPHROID_CONST uint kOutcomeBounceLimit = 5u;
-NEPHROID_CONST uint kOutcomeInterior = 6u;    // inside more solids than the list holds
-NEPHROID_CONST uint kOutcomeAbsorbed = 7u;    // nothing of it is left
-NEPHROID_CONST uint kOutcomeNoWay = 8u;       // there is no such branch: nothing is reflected, or all is
+NEPHROID_CONST uint kOutcomeInterior = 6u;  // inside more solids than the list holds
+NEPHROID_CONST uint kOutcomeAbsorbed = 7u;  // nothing of it is left
+NEPHROID_CONST uint kOutcomeNoWay = 8u;     // there is no such branch, or another one has it
+
+NEPHROID_CONST uint kOutcomeNumerical = 9u;  // not a number
+NEPHROID_CONST uint kOutcomeCount = 10u;
+
+/// Where the flux of a cell stayed that its photon does not carry, W: for the ledger. Of what branches have in common
+/// each share is in the account of one of them.
+struct PhotonAccount {
+  vec3 emitted;     // of the first branch: the light's flux through the cell
+  vec3 blocked;     // by the diffuse lobe of the generator that is met first
+  vec3 absorbed;    // in media and by generators
+  vec3 diffuse;     // share of the diffuse lobes of generators that are met later
+  vec3 other_way;   // where a branch follows one of two ways and no branch the other
+  vec3 internal;    // still inside where the last branch leaves
+  vec3 normal;      // sent through the true surface by an interpolated normal
+  vec3 microfacet;  // met more than one facet
+};
+
+/// Words of a record of sums: each member of PhotonAccount in order, then the photons' flux by outcome.
+NEPHROID_CONST uint kAccountKinds = 8u;
+NEPHROID_CONST uint kLedgerKinds = kAccountKinds + kOutcomeCount;
+/// Photons that a thread adds up: few enough that rounding does not count.
+NEPHROID_CONST uint kLedgerRow = 64u;
+
+/// Four numbers below 256.
+NEPHROID_FN uint packCounts(uint a, uint b, uint c, uint d) { return a | (b << 8) | (c << 16) | (d << 24); }
 
 struct TransportPush {
-  uint grid;         // cells along a side of a view's grid
-  uint light;        // in the table of lights
-  uint view;         // of the emission, among those of the light
-  uint branch;       // 0: reflected at the first surface; b >= 1: enters, and is reflected b - 1 times inside
+  uint grid;    // cells along a side of a view's grid
+  uint light;   // in the table of lights
+  uint view;    // of the emission, among those of the light
+  uint branch;  // 0: reflected at the first surface; b >= 1: enters, and leaves at its b-th chance
   uint max_events;
-  vec2 offset;       // of the photon in its cell, in [0, 1)
-  uint generator_views;
-  uint generator_layers;
-  uint receiver_views;
+  vec2 offset;    // of the photon in its cell, in [0, 1)
+  uint pictures;  // their counts, by packCounts
   float generator_size;
   float receiver_size;
   uint iterations;
+  uint is_last;         // no other branch has what stays inside
+  float wavelength_nm;  // of the band; 0: nothing disperses
+  vec3 band_weight;     // of the light's flux
+  uint band;
   vec3 generator_lower;  // bounds of what casts caustics, and of everything
   vec3 generator_upper;
   vec3 scene_lower;

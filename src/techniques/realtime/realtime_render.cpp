@@ -95,6 +95,8 @@ class ProgressiveFrames {
       throw InterruptedError("interrupted before there was anything to keep");
     result.image.width = settings_.width, result.image.height = settings_.height;
     for (const std::string& name : settings_.layers) result.image.layers.push_back({name, readLayer(name)});
+    if (settings_.ledgers && technique_.account && frame_.technique())
+      result.ledgers = technique_.account(*frame_.technique());
     describe(result);
     return result;
   }

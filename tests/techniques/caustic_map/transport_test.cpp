@@ -1,66 +1,22 @@
 #include "techniques/caustic_map/transport.h"
 
 #include <cmath>
-#include <map>
+#include <optional>
 
 #include "core/optics/fresnel.shared.h"
-#include "frame/light_views.h"
-#include "frame/view.h"
+#include "support/closed_form.h"
 #include "support/gpu_fixture.h"
 #include "support/tiny_scenes.h"
-#include "techniques/caustic_map/emission_views.h"
+#include "techniques/caustic_map/light_rig.h"
 
 namespace nephroid {
 namespace {
 
 constexpr std::uint32_t kGrid = 128;
 
-struct Flown {
-  std::vector<Photon> photons;
-  std::vector<ViewRecord> views;  ///< of the emission
-  LightRecord light;
-  std::map<std::uint32_t, int> outcomes;
-
-  static std::uint32_t outcomeOf(const Photon& p) { return photonFlags(p) >> kOutcomeShift; }
-};
-
-class TransportTest : public testing::GpuTest {
- protected:
-  /// Photons of the first light, through its first view.
-  static Flown fly(const SceneData& scene, TransportSettings settings, std::uint32_t layers = 4) {
-    Flown flown;
-    const LightView light = *LightViews(scene, 0).make(0, 0);
-    flown.light = light.light;
-    flown.views = makeEmissionViews(light.light, generatorBounds(scene, 0.25F), scene.bounds());
-    gpu::CommandRecorder recorder(device());
-    recorder.begin();
-    const SceneBuffers buffers(device(), recorder, scene, 0.25F);
-    std::vector<std::size_t> all, generators, receivers;
-    for (std::size_t i = 0; i < buffers.draws().size(); ++i) {
-      all.push_back(i);
-      if (buffers.draws()[i].generates) generators.push_back(i);
-      if (buffers.draws()[i].receives && !buffers.draws()[i].generates) receivers.push_back(i);
-    }
-    const auto views = static_cast<std::uint32_t>(flown.views.size());
-    SurfaceLayers first(device(), buffers, kGrid, views, 1), inner(device(), buffers, kGrid, views, layers),
-        outer(device(), buffers, kGrid, static_cast<std::uint32_t>(light.views.size()), 1);
-    first.record(recorder, flown.views, all);
-    inner.record(recorder, flown.views, generators);
-    outer.record(recorder, light.views, receivers);
-    const gpu::Buffer lights = gpu::makeBuffer<LightRecord>(device(), recorder, std::span(&flown.light, 1),
-                                                            VK_BUFFER_USAGE_STORAGE_BUFFER_BIT, "lights");
-    const PhotonBuffer photons(device(), kGrid * kGrid);
-    Transport transport(device(), buffers);
-    settings.grid = kGrid;
-    transport.record(recorder,
-                     {flown.views, generatorBounds(scene, 0.25F), scene.bounds(), light.views, first, inner, outer},
-                     lights, 0, 0, settings, photons);
-    recorder.submit();
-    flown.photons = readPhotons(device(), photons);
-    for (const Photon& p : flown.photons) ++flown.outcomes[Flown::outcomeOf(p)];
-    return flown;
-  }
-};
+using TransportTest = testing::GpuTest;
+using testing::Flown;
+using testing::LightRig;
 
 /// A glass box over a floor.
 SceneData makeSlab(vec3 sun, float ior = 1.5F) {
@@ -73,16 +29,16 @@ SceneData makeSlab(vec3 sun, float ior = 1.5F) {
 
 TEST_F(TransportTest, ASlabMovesLightAside) {
   const vec3 dir = normalize(vec3(0.5F, -1, 0.2F));
-  const Flown flown = fly(makeSlab(dir), {.branch = 1});
+  const SceneData scene = makeSlab(dir);
+  LightRig rig(device(), scene);
+  const Flown flown = rig.fly({.branch = 1});
   const double cos_i = -double{dir.y}, sin_i = std::sqrt(1.0 - cos_i * cos_i), sin_t = sin_i / 1.5,
                cos_t = std::sqrt(1.0 - sin_t * sin_t);
   const double r = fresnelDielectric(static_cast<float>(cos_i), 1.0F / 1.5F);
   int through = 0;
   for (const Photon& p : flown.photons) {
     if (!hasPhotonFlag(p, kPhotonValid)) continue;
-    const float x = (static_cast<float>(p.index % kGrid) + 0.5F) * 2.0F / kGrid - 1.0F;
-    const float y = (static_cast<float>(p.index / kGrid) + 0.5F) * 2.0F / kGrid - 1.0F;
-    const vec3 start = flown.views[0].eye + x * flown.views[0].right - y * flown.views[0].up;
+    const vec3 start = rig.startOf(p);
     // Where it meets the upper face, and where it would leave the lower one.
     const dvec3 upper = dvec3(start) + (1.2 - start.y) / dir.y * dvec3(dir);
     const dvec2 across = dvec2(dir.x, dir.z) / sin_i;
@@ -96,8 +52,7 @@ TEST_F(TransportTest, ASlabMovesLightAside) {
     ASSERT_NEAR(p.position.y, 0.0, 1e-5);
     ASSERT_NEAR(p.position.z, end.y, 2e-5);
     ASSERT_NEAR(dot(p.direction, dir), 1.0F, 1e-6F);
-    const double cell = 4.0 * length(flown.views[0].right) * length(flown.views[0].up) / (kGrid * kGrid);
-    ASSERT_NEAR(p.flux.y / (2.0 * cell * (1.0 - r) * (1.0 - r)), 1.0, 1e-4);
+    ASSERT_NEAR(p.flux.y / (2.0 * rig.cellArea() * (1.0 - r) * (1.0 - r)), 1.0, 1e-4);
     ASSERT_NEAR(p.path_length, 1.0 / cos_i, 1e-4);
   }
   EXPECT_GT(through, 2000);
@@ -106,7 +61,8 @@ TEST_F(TransportTest, ASlabMovesLightAside) {
 TEST_F(TransportTest, WhatASlabReflectsGoesUp) {
   // And what its sides reflect goes down.
   const vec3 dir = normalize(vec3(0.5F, -1, 0.2F));
-  const Flown flown = fly(makeSlab(dir), {.branch = 0});
+  const SceneData scene = makeSlab(dir);
+  const Flown flown = LightRig(device(), scene).fly({.branch = 0});
   int up = 0, down = 0;
   for (const Photon& p : flown.photons) {
     const std::uint32_t outcome = Flown::outcomeOf(p);
@@ -138,13 +94,12 @@ BallLens throughBall(double b, double n) {
 TEST_F(TransportTest, ABallFocuses) {
   SceneData scene = test::makeBallScene(test::makeGlass(1.5F), 512);
   scene.lights.push_back(test::makeSun(vec3(0, -1, 0), vec3(1)));
-  const Flown flown = fly(scene, {.branch = 1});
+  LightRig rig(device(), scene);
+  const Flown flown = rig.fly({.branch = 1});
   int through = 0, inside = 0;
   double worst = 0.0, sum = 0.0;
   for (const Photon& p : flown.photons) {
-    const float x = (static_cast<float>(p.index % kGrid) + 0.5F) * 2.0F / kGrid - 1.0F;
-    const float y = (static_cast<float>(p.index / kGrid) + 0.5F) * 2.0F / kGrid - 1.0F;
-    const vec3 start = flown.views[0].eye + x * flown.views[0].right - y * flown.views[0].up;
+    const vec3 start = rig.startOf(p);
     const double b = std::hypot(double{start.x}, double{start.z});
     // At the rim the facets count.
     if (b > 0.97 || b < 1e-3) continue;
@@ -155,8 +110,7 @@ TEST_F(TransportTest, ABallFocuses) {
     const double found = (double{p.position.x} * start.x + double{p.position.z} * start.z) / b;
     worst = std::max(worst, std::abs(found - lens.end));
     sum += std::abs(found - lens.end);
-    ASSERT_NEAR(p.flux.x / (4.0 * length(flown.views[0].right) * length(flown.views[0].up) / (kGrid * kGrid)),
-                lens.share, 3e-3);
+    ASSERT_NEAR(p.flux.x / rig.cellArea(), lens.share, 3e-3);
   }
   EXPECT_GT(inside, 5000);
   EXPECT_EQ(through, inside);
@@ -170,13 +124,138 @@ TEST_F(TransportTest, EveryPhotonSaysWhatBecameOfIt) {
   test::addObject(scene, makeRectangle("board", dvec3(1.0, 3.0, 0.0), dvec3(0, 0, 1.5), dvec3(1.0, 0, 0)),
                   test::makeDiffuse(vec3(0.5F)));
   scene.lights.push_back(test::makePoint(vec3(0, 6, 0), vec3(10)));
-  const Flown flown = fly(scene, {.branch = 1});
+  const Flown flown = LightRig(device(), scene).fly({.branch = 1});
   int sum = 0;
   for (const auto& [outcome, count] : flown.outcomes) sum += count;
   EXPECT_EQ(sum, static_cast<int>(kGrid * kGrid));
   // In the corners of the square light passes the ball and meets the floor, which bends nothing.
   EXPECT_GT(flown.outcomes.at(kOutcomeBlocked), static_cast<int>(kGrid * kGrid / 2));
   EXPECT_GT(flown.outcomes.at(kOutcomeDeposited), 3500);
+}
+
+/// An equilateral prism of side 1 over a floor; its base is level.
+SceneData makePrismScene(const Material& glass, double floor = 40.0) {
+  SceneData scene;
+  test::addObject(scene, test::makeFloor(floor), test::makeDiffuse(vec3(0.6F)));
+  const dvec2 corners[] = {{-0.5, 2.0}, {0.5, 2.0}, {0.0, 2.0 + std::sqrt(0.75)}};
+  test::addObject(scene, makePrism("prism", corners, -1.0, 1.0), glass);
+  return scene;
+}
+
+/// The branches' ends, added up: with each branch more of what was emitted.
+void expectBranchesShareTheLight(gpu::Device& device, const SceneData& scene, double share_of_eight) {
+  LightRig rig(device, scene);
+  const double emitted = rig.emitted().y;
+  const Flown first = rig.fly({.branch = 0, .max_events = 24});
+  double sum = first.fluxOf(kOutcomeMissed).y + first.fluxOf(kOutcomeBlocked).y + first.fluxAfterGenerators().y;
+  for (std::uint32_t branch = 1; branch < 8; ++branch) {
+    const Flown flown = rig.fly({.branch = branch, .max_events = 24});
+    EXPECT_EQ(flown.fluxOf(kOutcomeBlocked).y, 0.0);
+    EXPECT_GE(flown.fluxAfterGenerators().y, 0.0) << branch;
+    sum += flown.fluxAfterGenerators().y;
+    EXPECT_LE(sum, emitted * (1.0 + 1e-5)) << branch;
+  }
+  EXPECT_GT(sum, emitted * share_of_eight);
+}
+
+TEST_F(TransportTest, BranchesOfAPrismShareTheLight) {
+  SceneData scene = makePrismScene(test::makeGlass(1.5F));
+  scene.lights.push_back(test::makeSun(vec3(0.1F, -1, 0.3F), vec3(2)));
+  expectBranchesShareTheLight(device(), scene, 0.999);
+}
+
+TEST_F(TransportTest, BranchesOfACubeShareTheLight) {
+  SceneData scene;
+  test::addObject(scene, test::makeFloor(20.0), test::makeDiffuse(vec3(0.6F)));
+  test::addObject(scene, makeBox("cube", dvec3(-0.5, 1, -0.5), dvec3(0.5, 2, 0.5)), test::makeGlass(1.5F));
+  scene.lights.push_back(test::makeSun(vec3(0.5F, -1, 0.2F), vec3(2)));
+  expectBranchesShareTheLight(device(), scene, 0.99);
+}
+
+TEST_F(TransportTest, BranchesOfABallShareTheLight) {
+  SceneData scene = test::makeBallScene(test::makeGlass(1.5F), 128);
+  scene.lights.push_back(test::makePoint(vec3(1, 6, 0), vec3(10)));
+  expectBranchesShareTheLight(device(), scene, 0.999);
+}
+
+/// Angle of deviation of a ray through an equilateral prism, in its plane; nothing if it does not leave the second
+/// face.
+std::optional<double> deviate(dvec2 dir, double index) {
+  const dvec2 left = dvec2(-std::sqrt(0.75), 0.5), right = dvec2(std::sqrt(0.75), 0.5);
+  const auto inside = closed_form::refract(dir, left, 1.0, index);
+  const auto out = inside ? closed_form::refract(*inside, -right, index, 1.0) : std::nullopt;
+  if (!out) return std::nullopt;
+  return std::acos(dot(dir, *out));
+}
+
+TEST_F(TransportTest, APrismDeviatesEachBandByItsIndex) {
+  constexpr double kIndex = 1.5, kAbbe = 20.0;
+  Material glass = test::makeGlass(kIndex);
+  glass.dispersion = 20.0F / static_cast<float>(kAbbe);
+  SceneData scene = makePrismScene(glass, 2.0);
+  // Not far from the smallest deviation, from the left and below; light that the base reflects turns by 2 · 0.2 rad.
+  const dvec2 dir = normalize(dvec2(std::cos(0.2), std::sin(0.2)));
+  scene.lights.push_back(test::makeSun(vec3(dvec3(dir, 0.0)), vec3(2)));
+  LightRig rig(device(), scene);
+  double first = 0.0, last = 0.0;
+  const std::vector<Band> bands = makeBands(6);
+  for (std::uint32_t b = 0; b < bands.size(); ++b) {
+    const auto wanted = deviate(dir, closed_form::cauchyIndex(kIndex, kAbbe, bands[b].wavelength_nm));
+    ASSERT_TRUE(wanted);
+    int through = 0;
+    double worst = 0.0;
+    for (const Photon& p : rig.fly({.branch = 1, .band = bands[b], .band_index = b}).photons) {
+      const std::uint32_t outcome = Flown::outcomeOf(p);
+      ASSERT_EQ(photonBand(p), b);
+      if ((outcome != kOutcomeEscaped && outcome != kOutcomeDeposited) || std::abs(p.direction.z) > 1e-4F) continue;
+      const double found = std::acos(std::min(dot(dir, dvec2(p.direction.x, p.direction.y)), 1.0));
+      // Through the base and after total reflection it goes elsewhere.
+      if (std::abs(found - *wanted) > 0.1) continue;
+      ++through;
+      worst = std::max(worst, std::abs(found - *wanted));
+    }
+    EXPECT_GT(through, 2000) << b;
+    EXPECT_LT(closed_form::degreesD(worst), 0.01) << b;
+    (b == 0 ? first : last) = *wanted;
+  }
+  // Blue is bent more, by more than what is tolerated.
+  EXPECT_GT(closed_form::degreesD(first - last), 2.0);
+}
+
+TEST_F(TransportTest, BandsAddUpToOneWhereNothingDisperses) {
+  SceneData scene = test::makeBallScene(test::makeGlass(1.5F), 96);
+  scene.lights.push_back(test::makeSun(vec3(0.3F, -1, 0), vec3(1, 2, 3)));
+  LightRig rig(device(), scene);
+  const Flown one = rig.fly({.branch = 1});
+  std::vector<dvec3> sums(one.photons.size(), dvec3(0.0));
+  const std::vector<Band> bands = makeBands(5);
+  for (std::uint32_t b = 0; b < bands.size(); ++b) {
+    const Flown flown = rig.fly({.branch = 1, .band = bands[b], .band_index = b});
+    for (std::size_t i = 0; i < sums.size(); ++i) {
+      sums[i] += dvec3(flown.photons[i].flux);
+      ASSERT_EQ(flown.photons[i].position, one.photons[i].position);
+      ASSERT_EQ(Flown::outcomeOf(flown.photons[i]), Flown::outcomeOf(one.photons[i]));
+    }
+  }
+  for (std::size_t i = 0; i < sums.size(); ++i)
+    for (int c = 0; c < 3; ++c) ASSERT_NEAR(sums[i][c], one.photons[i].flux[c], 2e-6 * rig.cellArea() * 3.0);
+}
+
+TEST_F(TransportTest, WhatLiesInWaterBelongsToOneBranch) {
+  // An open surface: below it light never comes to leave.
+  SceneData scene;
+  test::addObject(scene, test::makeFloor(8.0), test::makeDiffuse(vec3(0.6F)));
+  test::addObject(scene, makeRectangle("water", dvec3(0, 1, 0), dvec3(0, 0, 2), dvec3(2, 0, 0)),
+                  test::makeGlass(1.33F));
+  scene.lights.push_back(test::makeSun(vec3(0.3F, -1, 0), vec3(2)));
+  LightRig rig(device(), scene);
+  const double beside = rig.fly({.branch = 0}).fluxOf(kOutcomeBlocked).y;
+  EXPECT_GT(rig.fly({.branch = 1}).fluxOf(kOutcomeDeposited).y, 0.95 * (rig.emitted().y - beside));
+  for (const std::uint32_t branch : {2U, 3U}) {
+    const Flown flown = rig.fly({.branch = branch});
+    EXPECT_EQ(flown.fluxAfterGenerators().y, 0.0) << branch;
+    EXPECT_EQ(flown.outcomes.count(kOutcomeDeposited), 0U) << branch;
+  }
 }
 
 }  // namespace

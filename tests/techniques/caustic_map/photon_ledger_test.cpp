@@ -1,0 +1,133 @@
+#include "techniques/caustic_map/photon_ledger.h"
+
+#include <cmath>
+
+#include "scene/load.h"
+#include "support/gpu_fixture.h"
+#include "support/tiny_scenes.h"
+#include "techniques/caustic_map/light_rig.h"
+
+namespace nephroid {
+namespace {
+
+using PhotonLedgerTest = testing::GpuTest;
+using testing::LightRig;
+
+dvec3 lostTo(const Ledger& ledger, LossReason reason) { return ledger.lost[static_cast<std::size_t>(reason)]; }
+
+/// What the reference says of the same scene, from two million photons.
+Ledger referenceLedger(const SceneData& scene) {
+  const Camera camera = makeCamera("above", vec3(0, 9, 0.1F), vec3(0), 0.8F);
+  const RenderResult result = test::renderReference(scene, camera, test::makeSettings(16, 1, 2000000, {"caustic"}));
+  return result.ledgers.at(0);
+}
+
+void expectCloses(const Ledger& ledger) {
+  EXPECT_GT(ledger.emitted.y, 0.0);
+  EXPECT_LE(ledger.residual(), 1e-5) << formatLedgers({ledger});
+}
+
+Material makeColoured() {
+  Material m = test::makeGlass(1.5F);
+  m.attenuation_color = vec3(0.1F, 0.5F, 0.9F);
+  m.attenuation_distance = 1.0F;
+  return m;
+}
+
+TEST_F(PhotonLedgerTest, ClosesForSolidsAndMetal) {
+  Material varnished = test::makeDiffuse(vec3(0.5F, 0.4F, 0.3F));
+  varnished.metallic = 0.5F;
+  varnished.roughness = 0.0F;
+  for (const Material& material :
+       {test::makeGlass(1.5F), makeColoured(), test::makeMetal(vec3(0.9F, 0.6F, 0.3F)), varnished}) {
+    SceneData scene = test::makeBallScene(material, 64);
+    test::addObject(scene, makeBox("cube", dvec3(1.2, 1, -0.5), dvec3(2.2, 2, 0.5)), material);
+    scene.lights.push_back(test::makeSun(vec3(-0.7F, -1, 0.2F), vec3(2, 3, 5)));
+    LightRig rig(device(), scene);
+    for (const std::uint32_t last : {0U, 1U, 4U}) expectCloses(rig.ledger(last));
+  }
+}
+
+TEST_F(PhotonLedgerTest, ClosesForBuiltInScenes) {
+  for (const char* name : {"builtin:ring", "builtin:prism", "builtin:slab", "builtin:cube", "builtin:cognac"}) {
+    SCOPED_TRACE(name);
+    const SceneData scene = loadScene(name);
+    LightRig rig(device(), scene);
+    expectCloses(rig.ledger(2));
+  }
+}
+
+TEST_F(PhotonLedgerTest, ClosesForACubeOfViews) {
+  SceneData scene = test::makeBallScene(makeColoured(), 96);
+  // Within the box about the ball.
+  scene.lights.push_back(test::makePoint(vec3(0.95F, 2.15F, 0.95F), vec3(2, 3, 5)));
+  LightRig rig(device(), scene);
+  ASSERT_GT(rig.viewCount(), 1U);
+  expectCloses(rig.ledger(3));
+}
+
+TEST_F(PhotonLedgerTest, ClosesForBands) {
+  Material glass = makeColoured();
+  glass.dispersion = 1.0F;
+  SceneData scene = test::makeBallScene(glass, 96);
+  scene.lights.push_back(test::makeSun(vec3(0.3F, -1, 0), vec3(1, 2, 3)));
+  LightRig rig(device(), scene);
+  Ledger sum;
+  // Weights may be negative, so shares of single bands say little: the sum is the light's.
+  for (const Band& band : makeBands(4)) sum.add(rig.ledger(2, {.band = band}));
+  expectCloses(sum);
+  for (int c = 0; c < 3; ++c) EXPECT_NEAR(sum.emitted[c] / rig.emitted()[c], 1.0, 1e-5);
+  EXPECT_GT(sum.deposited.y, 0.1 * sum.emitted.y);
+}
+
+TEST_F(PhotonLedgerTest, TwoRunsAreEqual) {
+  SceneData scene = test::makeBallScene(makeColoured(), 96);
+  scene.lights.push_back(test::makePoint(vec3(1, 5, 1), vec3(2, 3, 5)));
+  LightRig rig(device(), scene);
+  const Ledger first = rig.ledger(2), second = rig.ledger(2);
+  EXPECT_EQ(first.deposited, second.deposited);
+  EXPECT_EQ(first.absorbed, second.absorbed);
+  EXPECT_EQ(first.lostTotal(), second.lostTotal());
+}
+
+TEST_F(PhotonLedgerTest, AgreesWithTheReferenceForABall) {
+  for (const bool is_sun : {true, false}) {
+    SCOPED_TRACE(is_sun ? "sun" : "point");
+    SceneData scene = test::makeBallScene(makeColoured(), 128);
+    scene.lights.push_back(is_sun ? test::makeSun(vec3(-0.4F, -1, -0.2F), vec3(3))
+                                  : test::makePoint(vec3(1, 5, 1), vec3(9)));
+    LightRig rig(device(), scene);
+    const Ledger ledger = rig.ledger(7, {.max_events = 12}), reference = referenceLedger(scene);
+    expectCloses(ledger);
+    for (int c = 0; c < 3; ++c) {
+      EXPECT_NEAR(ledger.deposited[c] / reference.deposited[c], 1.0, 0.01);
+      EXPECT_NEAR(ledger.absorbed[c] / reference.absorbed[c], 1.0, 0.01);
+      EXPECT_NEAR(ledger.escaped[c] / reference.escaped[c], 1.0, 0.02);
+    }
+  }
+}
+
+TEST_F(PhotonLedgerTest, AgreesWithTheReferenceForAPrism) {
+  // Total reflection decides who gets what.
+  const SceneData scene = loadScene("builtin:prism");
+  LightRig rig(device(), scene, 256);
+  const Ledger ledger = rig.ledger(6, {.max_events = 16}), reference = referenceLedger(scene);
+  expectCloses(ledger);
+  EXPECT_NEAR(ledger.deposited.y / reference.deposited.y, 1.0, 0.02) << formatLedgers({ledger, reference});
+}
+
+TEST_F(PhotonLedgerTest, NamesWhatIsNotFollowed) {
+  SceneData scene = test::makeBallScene(test::makeGlass(1.5F), 96);
+  scene.lights.push_back(test::makeSun(vec3(0, -1, 0), vec3(1)));
+  LightRig rig(device(), scene);
+  const Ledger one = rig.ledger(1), six = rig.ledger(6);
+  // Of light that enters some per cent are reflected inside, and of these as few leave later.
+  EXPECT_GT(lostTo(one, LossReason::kInternalReflections).y, 0.02 * one.emitted.y);
+  EXPECT_LT(lostTo(six, LossReason::kInternalReflections).y, 0.002 * one.emitted.y);
+  EXPECT_EQ(lostTo(rig.ledger(0), LossReason::kInternalReflections).y, 0.0);
+  EXPECT_GT(lostTo(rig.ledger(0), LossReason::kOtherWay).y, 0.7 * one.emitted.y * 0.95);
+  EXPECT_GT(lostTo(rig.ledger(1, {.max_events = 1}), LossReason::kBounceLimit).y, 0.7 * one.emitted.y * 0.95);
+}
+
+}  // namespace
+}  // namespace nephroid
