@@ -13,7 +13,9 @@ layout(push_constant, scalar) uniform Push { TransportPush push; };
 
 layout(scalar, set = 0, binding = 7) readonly buffer LayerViews { ViewRecord layer_views[]; };
 layout(set = 0, binding = 16) uniform usampler2D neighbour_table;
-#include "techniques/caustic_map/layered_view.glsl"
+layout(constant_id = 21) const uint kSearch = kSearchPlanes;
+layout(constant_id = 22) const uint kExit = kExitPlanes;
+#include "techniques/caustic_map/receiver_search.glsl"
 #include "frame/emission.shared.h"
 #define NEPHROID_PHOTON_BINDING 14
 #include "frame/photons.glsl"
@@ -38,6 +40,9 @@ struct Flight {
   bool decided;         // the branch has nothing more to say
   int closed;           // closed solids that it is inside of
   float last_distance;  // m, since the last event
+  vec3 place;           // on what was met last
+  vec3 normal;          // of what was bent at last, and the direction before
+  vec3 from;
   PhotonAccount account;
 };
 
@@ -121,6 +126,8 @@ void bend(inout Flight flight, Met met) {
   Way reflected = reflection(scattered, e.surface), transmitted = transmission(scattered, e.surface);
   // Of flux, not of radiance: it does not know the index.
   transmitted.weight /= radianceScale(optics);
+  flight.normal = e.surface.geometric;
+  flight.from = flight.path.ray.dir;
   Choice choice = chooseWay(reflected, transmitted, events, e.crossing.is_solid && !e.crossing.entering, flight);
   if (kAccounts) accountFor(flight, e, optics, scattered, reflected, transmitted, choice);
   flight.chain = hashChain(flight.chain, 2u * met.instance + (choice.way.through ? 1u : 0u));
@@ -154,9 +161,22 @@ Met meetNext(inout Flight flight, Pictures generators, Pictures receivers) {
   Ray ray = flight.path.ray;
   Start start = Start(flight.path.instance, flight.path.triangle);
   float t_end = leaveBox(ray, push.generator_lower, push.generator_upper);
-  Met met = meetLayers(ray, t_end, start, generators, generator_seen, generator_surfaces, push.iterations, hidden);
+  Met met = Met(kFarAway, 0.0, 0.0, kNowhere, 0u);
+  bool has_entered = flight.path.events == 1u && dot(ray.dir, flight.normal) < 0.0 && generators.layer_count > 1u;
+  if (kExit == kExitWyman && has_entered)
+    met = meetBackFace(ray, flight.normal, flight.from, generators, generator_seen, generator_surfaces);
+  else
+    met = meetLayers(ray, t_end, start, generators, generator_seen, generator_surfaces, push.iterations, hidden);
   t_end = leaveBox(ray, push.scene_lower, push.scene_upper);
-  Met receiver = meetLayers(ray, t_end, start, receivers, receiver_seen, receiver_surfaces, push.iterations, hidden_receiver);
+  Met receiver;
+  if (kSearch == kSearchPlanes) {
+    receiver = meetLayers(ray, t_end, start, receivers, receiver_seen, receiver_surfaces, push.receiver_iterations,
+                          hidden_receiver);
+    flight.place = ray.origin + receiver.t * ray.dir;
+  } else {
+    receiver = searchReceiver(ray, t_end, push.first_guess, receivers, receiver_seen, receiver_surfaces, 0u,
+                              push.receiver_iterations, flight.place);
+  }
   // From inside a closed solid there is no way but through its surface: a receiver farther on is not met.
   bool is_enclosed = flight.closed > 0 && met.instance == kNowhere;
   if (receiver.t < met.t) met = receiver;
@@ -181,12 +201,12 @@ void leaveToOthers(inout Flight flight) {
   }
 }
 
-Photon describe(Flight flight, vec3 place, uint index) {
+Photon describe(Flight flight, uint index) {
   Photon photon;
   bool valid = flight.outcome == kOutcomeDeposited;
   uint flags = (valid ? kPhotonValid : 0u) | (flight.outcome == kOutcomeEscaped ? kPhotonLeftScene : 0u) |
                (flight.outcome << kOutcomeShift);
-  photon.position = place;
+  photon.position = valid ? flight.place : flight.path.ray.origin;
   photon.path_length = flight.last_distance;
   photon.direction = flight.path.ray.dir;
   photon.light_band_flags = packLightBandFlags(push.light, push.band, flags);
@@ -209,7 +229,7 @@ void main() {
   Path path = Path(ray, flux, false, false, 0u, 0u, push.wavelength_nm, kNowhere, 0u, kInTheOpen);
   vec3 none = vec3(0.0);
   PhotonAccount account = PhotonAccount(push.branch == 0u ? flux : none, none, none, none, none, none, none, none);
-  Flight flight = Flight(path, 0u, kOutcomeDeposited, 0u, false, 0, 0.0, account);
+  Flight flight = Flight(path, 0u, kOutcomeDeposited, 0u, false, 0, 0.0, ray.origin, none, none, account);
 
   uvec4 counts = (uvec4(push.pictures) >> uvec4(0u, 8u, 16u, 24u)) & 255u;
   Pictures generators = Pictures(0u, counts.x, counts.y, push.generator_size);
@@ -222,7 +242,6 @@ void main() {
   else if ((fetchInstance(met.instance).flags & kInstanceGenerates) == 0u) flight.outcome = kOutcomeBlocked;
   flight.path.ended = flight.outcome != kOutcomeDeposited;
 
-  vec3 place = ray.origin;
   // Surfaces of solids that others rule are no events.
   for (uint i = 0u; i < 2u * max_events && !flight.path.ended; ++i) {
     if (i > 0u) met = meetNext(flight, generators, receivers);
@@ -231,7 +250,6 @@ void main() {
     if ((fetchInstance(met.instance).flags & kInstanceGenerates) != 0u) {
       meetGenerator(flight, met);
     } else {
-      place = flight.path.ray.origin + met.t * flight.path.ray.dir;
       arrive(flight, met);
       flight.chain = hashChain(flight.chain, 2u * met.instance);
       flight.path.ended = true;
@@ -240,6 +258,6 @@ void main() {
   if (!flight.path.ended) flight.outcome = kOutcomeBounceLimit;
   leaveToOthers(flight);
   uint index = cell.y * push.grid + cell.x;
-  photons[index] = describe(flight, place, index);
+  photons[index] = describe(flight, index);
   if (kAccounts) accounts[index] = flight.account;
 }

@@ -25,11 +25,13 @@ Transport::Transport(gpu::Device& device, const SceneBuffers& buffers)
 }
 
 const gpu::ComputePipeline& Transport::pipelineFor(const TransportSettings& settings) {
-  const std::vector<std::uint32_t> key{settings.account != nullptr ? 1U : 0U};
+  const std::vector<std::uint32_t> key{settings.account != nullptr ? 1U : 0U,
+                                       static_cast<std::uint32_t>(settings.search),
+                                       static_cast<std::uint32_t>(settings.exit)};
   const auto found = pipelines_.find(key);
   if (found != pipelines_.end()) return found->second;
   std::vector<gpu::Constant> constants = buffers_.traits().pathConstants();
-  constants.push_back({20, key[0]});
+  for (std::uint32_t i = 0; i < key.size(); ++i) constants.push_back({20 + i, key[i]});
   gpu::ComputePipeline pipeline(device_,
                                 {.shader = shaders::transport_comp,
                                  .bindings = SceneBuffers::bindings({kTable, kTable, kTexture, kTexture, kTexture,
@@ -60,6 +62,8 @@ void Transport::record(gpu::CommandRecorder& recorder, const LightPictures& pict
       .generator_size = static_cast<float>(pictures.generators.size()),
       .receiver_size = static_cast<float>(pictures.receivers.size()),
       .iterations = settings.iterations,
+      .receiver_iterations = settings.receiver_iterations,
+      .first_guess = settings.first_guess,
       .is_last = settings.is_last ? 1U : 0U,
       .wavelength_nm = settings.band.wavelength_nm,
       .band_weight = settings.band.weight,

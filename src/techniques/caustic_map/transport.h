@@ -25,6 +25,17 @@ struct LightPictures {
   const SurfaceLayers& receivers;              ///< what the others show of all that is no generator, black things too
 };
 
+/// How a receiver is found (receiver_search.glsl): the default exactly, the others as the paper does and compares.
+enum class Search : std::uint8_t {
+  kPlanes = kSearchPlanes,    ///< Newton's method on the planes that are seen, then over the surface
+  kIterate = kSearchIterate,  ///< the paper's own
+  kNewton = kSearchNewton,    ///< with finite differences
+  kSecant = kSearchSecant,
+  kMarch = kSearchMarch,
+};
+/// How light leaves what it has entered: exactly, or at the back face that Wyman's approximation finds.
+enum class Exit : std::uint8_t { kPlanes = kExitPlanes, kWyman = kExitWyman };
+
 /// How light is followed.
 struct TransportSettings {
   std::uint32_t grid = 256;  ///< cells along a side of each of the emission's views
@@ -36,7 +47,11 @@ struct TransportSettings {
   /// Part of the spectrum, of makeBands; wavelength 0: all of it as one, with the indices that materials say.
   Band band{0.0F, vec3(1.0F)};
   std::uint32_t band_index = 0;
-  std::uint32_t iterations = 8;  ///< to find where a ray meets a surface
+  std::uint32_t iterations = 8;           ///< to find where a ray meets a generator,
+  std::uint32_t receiver_iterations = 8;  ///< and a receiver
+  Search search = Search::kPlanes;
+  Exit exit = Exit::kPlanes;
+  float first_guess = 0.0F;  ///< of the paper's methods, m; 0: what is seen where the ray starts
   /// For the ledger (PhotonLedger::account): what stays on the way. Of no use without it, and it takes time.
   const gpu::Buffer* account = nullptr;
   bool is_last = false;  ///< no branch beyond this one is followed: for the account

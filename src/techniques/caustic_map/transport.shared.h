@@ -40,6 +40,15 @@ NEPHROID_CONST uint kLedgerKinds = kAccountKinds + kOutcomeCount;
 /// Photons that a thread adds up: few enough that rounding does not count.
 NEPHROID_CONST uint kLedgerRow = 64u;
 
+// How a receiver is found, and the back face of what light has entered: see receiver_search.glsl.
+NEPHROID_CONST uint kSearchPlanes = 0u;  // layered_view.glsl
+NEPHROID_CONST uint kSearchIterate = 1u;
+NEPHROID_CONST uint kSearchNewton = 2u;
+NEPHROID_CONST uint kSearchSecant = 3u;
+NEPHROID_CONST uint kSearchMarch = 4u;
+NEPHROID_CONST uint kExitPlanes = 0u;
+NEPHROID_CONST uint kExitWyman = 1u;
+
 /// Four numbers below 256.
 NEPHROID_FN uint packCounts(uint a, uint b, uint c, uint d) { return a | (b << 8) | (c << 16) | (d << 24); }
 
@@ -54,6 +63,8 @@ struct TransportPush {
   float generator_size;
   float receiver_size;
   uint iterations;
+  uint receiver_iterations;
+  float first_guess;    // m; of receiver_search.glsl
   uint is_last;         // no other branch has what stays inside
   float wavelength_nm;  // of the band; 0: nothing disperses
   vec3 band_weight;     // of the light's flux
