@@ -21,6 +21,10 @@ layout(constant_id = 22) const uint kExit = kExitPlanes;
 #include "frame/photons.glsl"
 
 layout(constant_id = 20) const bool kAccounts = false;  // keeps the ledger's accounts: costs time
+layout(constant_id = 23) const uint kGeneratorViews = 1u;
+layout(constant_id = 24) const uint kGeneratorLayers = 1u;
+layout(constant_id = 25) const uint kReceiverViews = 1u;
+layout(constant_id = 26) const uint kReceiverLayers = 1u;
 layout(local_size_x = 8, local_size_y = 8) in;
 layout(scalar, set = 0, binding = 8) readonly buffer Lights { LightRecord lights[]; };
 layout(set = 0, binding = 9) uniform usampler2DArray first_seen;  // of the emission's views: all that there is
@@ -231,9 +235,8 @@ void main() {
   PhotonAccount account = PhotonAccount(push.branch == 0u ? flux : none, none, none, none, none, none, none, none);
   Flight flight = Flight(path, 0u, kOutcomeDeposited, 0u, false, 0, 0.0, ray.origin, none, none, account);
 
-  uvec4 counts = (uvec4(push.pictures) >> uvec4(0u, 8u, 16u, 24u)) & 255u;
-  Pictures generators = Pictures(0u, counts.x, counts.y, push.generator_size);
-  Pictures receivers = Pictures(counts.x, counts.z, counts.w, push.receiver_size);
+  Pictures generators = Pictures(0u, kGeneratorViews, kGeneratorLayers, push.generator_size);
+  Pictures receivers = Pictures(kGeneratorViews, kReceiverViews, kReceiverLayers, push.receiver_size);
   ivec3 texel = ivec3(ivec2((film * 0.5 + 0.5) * push.generator_size), push.view);
   uvec2 seen = texelFetch(first_seen, texel, 0).xy;
   Met met = Met(kFarAway, 0.0, 0.0, kNowhere, 0u);

@@ -72,7 +72,7 @@ class Transport {
               std::uint32_t light, std::uint32_t view, const TransportSettings& settings, const PhotonBuffer& photons);
 
  private:
-  const gpu::ComputePipeline& pipelineFor(const TransportSettings& settings);
+  const gpu::ComputePipeline& pipelineFor(const LightPictures& pictures, const TransportSettings& settings);
 
   gpu::Device& device_;
   const SceneBuffers& buffers_;

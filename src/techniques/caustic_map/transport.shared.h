@@ -49,17 +49,13 @@ NEPHROID_CONST uint kSearchMarch = 4u;
 NEPHROID_CONST uint kExitPlanes = 0u;
 NEPHROID_CONST uint kExitWyman = 1u;
 
-/// Four numbers below 256.
-NEPHROID_FN uint packCounts(uint a, uint b, uint c, uint d) { return a | (b << 8) | (c << 16) | (d << 24); }
-
 struct TransportPush {
   uint grid;    // cells along a side of a view's grid
   uint light;   // in the table of lights
   uint view;    // of the emission, among those of the light
   uint branch;  // 0: reflected at the first surface; b >= 1: enters, and leaves at its b-th chance
   uint max_events;
-  vec2 offset;    // of the photon in its cell, in [0, 1)
-  uint pictures;  // their counts, by packCounts
+  vec2 offset;  // of the photon in its cell, in [0, 1)
   float generator_size;
   float receiver_size;
   uint iterations;
