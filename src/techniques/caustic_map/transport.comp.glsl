@@ -126,7 +126,11 @@ void bend(inout Flight flight, Met met) {
   Medium from = fetchMedium(e.boundary.from), to = fetchMedium(e.boundary.to);
   optics.ior_from = iorOf(from, flight.path.wavelength_nm);
   if (e.crossing.is_solid) optics.ior_to = iorOf(to, flight.path.wavelength_nm);
-  Scattered scattered = scatterSmooth(optics, flight.path.ray.dir, e.surface.shading);
+  // Branches draw the same facets where they share their way.
+  vec2 u = kSceneHasRoughSpecular ? vec2(draw(flight.path), draw(flight.path)) : vec2(0.0);
+  Scattered scattered = kSceneHasRoughSpecular && optics.alpha > 0.0
+                            ? scatterRough(optics, flight.path.ray.dir, e.surface.shading, u)
+                            : scatterSmooth(optics, flight.path.ray.dir, e.surface.shading);
   Way reflected = reflection(scattered, e.surface), transmitted = transmission(scattered, e.surface);
   // Of flux, not of radiance: it does not know the index.
   transmitted.weight /= radianceScale(optics);
@@ -230,7 +234,8 @@ void main() {
   EmissionRay emitted = emissionRay(view, film.x, film.y);
   vec3 flux = cellFlux(lights[push.light], view, film.x, film.y, 1.0 / float(push.grid * push.grid)) * push.band_weight;
   Ray ray = Ray(emitted.origin, emitted.dir);
-  Path path = Path(ray, flux, false, false, 0u, 0u, push.wavelength_nm, kNowhere, 0u, kInTheOpen);
+  uint seed = hashChain(push.seed, cell.y * push.grid + cell.x);
+  Path path = Path(ray, flux, false, false, 0u, seed, push.wavelength_nm, kNowhere, 0u, kInTheOpen);
   vec3 none = vec3(0.0);
   PhotonAccount account = PhotonAccount(push.branch == 0u ? flux : none, none, none, none, none, none, none, none);
   Flight flight = Flight(path, 0u, kOutcomeDeposited, 0u, false, 0, 0.0, ray.origin, none, none, account);

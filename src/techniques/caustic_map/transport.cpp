@@ -66,6 +66,7 @@ void Transport::record(gpu::CommandRecorder& recorder, const LightPictures& pict
                            .wavelength_nm = settings.band.wavelength_nm,
                            .band_weight = settings.band.weight,
                            .band = settings.band_index,
+                           .seed = settings.seed,
                            .generator_lower = pictures.generator_bounds.lower,
                            .generator_upper = pictures.generator_bounds.upper,
                            .scene_lower = pictures.scene_bounds.lower,

@@ -47,6 +47,7 @@ struct TransportSettings {
   /// Part of the spectrum, of makeBands; wavelength 0: all of it as one, with the indices that materials say.
   Band band{0.0F, vec3(1.0F)};
   std::uint32_t band_index = 0;
+  std::uint32_t seed = 0;                 ///< of the facets of rough surfaces: another one for each frame
   std::uint32_t iterations = 8;           ///< to find where a ray meets a generator,
   std::uint32_t receiver_iterations = 8;  ///< and a receiver
   Search search = Search::kPlanes;

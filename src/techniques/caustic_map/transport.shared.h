@@ -65,6 +65,7 @@ struct TransportPush {
   float wavelength_nm;  // of the band; 0: nothing disperses
   vec3 band_weight;     // of the light's flux
   uint band;
+  uint seed;             // of microfacets
   vec3 generator_lower;  // bounds of what casts caustics, and of everything
   vec3 generator_upper;
   vec3 scene_lower;
