@@ -156,6 +156,38 @@ void meetGenerator(inout Flight flight, Met met) {
   flight.closed += is_closed ? countSolids(flight.path.interior) - solids : 0;
 }
 
+/// What light neither is bent by nor may pass straight through.
+bool isBlocker(uint instance) {
+  uint passes = kInstanceGenerates | (kSceneHasPassable ? kInstancePassable : 0u);
+  return (fetchInstance(instance).flags & passes) == 0u;
+}
+
+/// Ends the flight on a surface, or leads it straight through, as shadows are: panes tint it, of what is partly there a
+/// share lets it pass.
+void meetReceiver(inout Flight flight, Met met) {
+  Encounter e = arrive(flight, met);
+  flight.chain = hashChain(flight.chain, 2u * met.instance);
+  bool is_first = flight.path.events == 0u;
+  vec3 pass = vec3(0.0);
+  if (kSceneHasPassable && !isBlocker(met.instance)) {
+    bool is_hole = draw(flight.path) >= e.material.coverage;
+    MaterialPoint whole = e.material;
+    whole.coverage = 1.0;
+    pass = is_hole ? vec3(1.0) : passTransmittance(whole, abs(dot(flight.path.ray.dir, e.surface.shading)));
+  }
+  if (!kSceneHasPassable || largest(pass) <= 0.0) {
+    flight.path.ended = true;
+    flight.outcome = is_first ? kOutcomeBlocked : kOutcomeDeposited;
+    return;
+  }
+  vec3 rest = flight.path.throughput * (1.0 - pass);
+  bool own = is_first ? push.branch == 0u : isOwn(flight);
+  if (kAccounts && own && is_first) flight.account.blocked += rest;
+  if (kAccounts && own && !is_first) flight.account.other_way += rest;
+  flight.path.throughput *= pass;
+  flight.path.ray = startFrom(e.surface, flight.path.ray.dir);
+}
+
 /// Follows the flight to infinity.
 void depart(inout Flight flight) {
   vec3 before = flight.path.throughput;
@@ -192,6 +224,7 @@ Met meetNext(inout Flight flight, Pictures generators, Pictures receivers) {
     flight.outcome = is_enclosed || hidden || hidden_receiver ? kOutcomeHidden : kOutcomeEscaped;
     flight.path.ended = true;
     if (flight.outcome == kOutcomeEscaped) depart(flight);
+    if (flight.outcome == kOutcomeEscaped && flight.path.events == 0u) flight.outcome = kOutcomeMissed;
   }
   return met;
 }
@@ -247,7 +280,7 @@ void main() {
   Met met = Met(kFarAway, 0.0, 0.0, kNowhere, 0u);
   if (seen.x != 0u) met = walkToRay(ray, seen, vec3(0.0), 0.0);
   if (met.instance == kNowhere) flight.outcome = kOutcomeMissed;
-  else if ((fetchInstance(met.instance).flags & kInstanceGenerates) == 0u) flight.outcome = kOutcomeBlocked;
+  else if (isBlocker(met.instance)) flight.outcome = kOutcomeBlocked;
   flight.path.ended = flight.outcome != kOutcomeDeposited;
 
   // Surfaces of solids that others rule are no events.
@@ -258,9 +291,7 @@ void main() {
     if ((fetchInstance(met.instance).flags & kInstanceGenerates) != 0u) {
       meetGenerator(flight, met);
     } else {
-      arrive(flight, met);
-      flight.chain = hashChain(flight.chain, 2u * met.instance);
-      flight.path.ended = true;
+      meetReceiver(flight, met);
     }
   }
   if (!flight.path.ended) flight.outcome = kOutcomeBounceLimit;

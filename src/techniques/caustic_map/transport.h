@@ -22,7 +22,8 @@ struct LightPictures {
   std::span<const ViewRecord> receiver_views;  ///< of everything that light may reach
   const SurfaceLayers& first;                  ///< what the emission's views show of all there is; one layer
   const SurfaceLayers& generators;             ///< what they show of generators
-  const SurfaceLayers& receivers;              ///< what the others show of all that is no generator, black things too
+  const SurfaceLayers& receivers;              ///< what the others show of all that is no generator: black things
+                                               ///< too, and what lies behind panes if it has several layers
 };
 
 /// How a receiver is found (receiver_search.glsl): the default exactly, the others as the paper does and compares.

@@ -121,6 +121,23 @@ TEST_F(PhotonLedgerTest, AgreesWithTheReferenceForRoughBalls) {
   }
 }
 
+TEST_F(PhotonLedgerTest, LightPassesPanesAsShadowsDo) {
+  Material pane = test::makeGlass(1.5F);
+  pane.thickness = 0.0F;
+  pane.base_color = vec4(0.9F, 0.5F, 0.2F, 1.0F);
+  // One before the ball, one between it and the floor.
+  for (const double height : {2.6, 0.1}) {
+    SCOPED_TRACE(height);
+    SceneData scene = test::makeBallScene(test::makeGlass(1.5F), 128);
+    test::addObject(scene, makeRectangle("pane", dvec3(0, height, 0), dvec3(0, 0, 6), dvec3(6, 0, 0)), pane);
+    scene.lights.push_back(test::makeSun(vec3(-0.2F, -1, -0.1F), vec3(3)));
+    LightRig rig(device(), scene, 192);
+    const Ledger ledger = rig.ledger(4, {.max_events = 12}), reference = referenceLedger(scene);
+    expectCloses(ledger);
+    for (int c = 0; c < 3; ++c) EXPECT_NEAR(ledger.deposited[c] / reference.deposited[c], 1.0, 0.03) << c;
+  }
+}
+
 TEST_F(PhotonLedgerTest, AgreesWithTheReferenceForAPrism) {
   // Total reflection decides who gets what.
   const SceneData scene = loadScene("builtin:prism");
