@@ -8,8 +8,6 @@ NEPHROID_NAMESPACE_BEGIN
 
 /// Red, green, blue.
 NEPHROID_CONST uint kFluxChannels = 3u;
-/// In each coordinate, m, where a picture shows nothing: too far away to be near anything, and its square is a float.
-NEPHROID_CONST float kNoPlace = 1e18f;
 /// Texels along a side of what is remembered to hold flux or not.
 NEPHROID_CONST uint kDepositTile = 8u;
 

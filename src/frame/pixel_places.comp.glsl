@@ -4,7 +4,6 @@
 #extension GL_EXT_scalar_block_layout : require
 #define NEPHROID_PIXEL_BINDINGS 7
 #include "frame/pixel_surface.glsl"
-#include "frame/deposit.shared.h"
 
 layout(local_size_x = 8, local_size_y = 8) in;
 layout(set = 0, binding = 12, rgba32f) writeonly uniform image2DArray surface_image;
@@ -14,7 +13,7 @@ void main() {
   ivec2 size = imageSize(surface_image).xy;
   if (at.x >= size.x || at.y >= size.y) return;
   PixelSurface pixel;
-  vec4 value = vec4(vec3(kNoPlace), 0.0);
+  vec4 value = vec4(uintBitsToFloat(0x7F800000u));  // infinitely far away
   if (surfaceOfPixel(at, size, pixel)) value = vec4(pixel.position, uintBitsToFloat(packUnitVector(pixel.geometric)));
   imageStore(surface_image, ivec3(at, 0), value);
 }

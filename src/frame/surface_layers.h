@@ -36,7 +36,7 @@ class SurfaceLayers {
   /// R32G32_UINT array: instance + 1 (0: nothing), triangle of its mesh.
   const gpu::Image& seen() const { return seen_; }
   /// RGBA32F array: place in the world, and the bits of packUnitVector of the normal that points out of the solid.
-  /// Where nothing is seen it is too far away to be near anything.
+  /// Infinity where nothing is seen.
   const gpu::Image& surfaces() const { return surfaces_; }
 
  private:

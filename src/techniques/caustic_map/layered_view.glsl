@@ -1,9 +1,10 @@
 // What a ray meets first among surfaces that are known as pictures: layers of views (frame/surface_layers.h).
 //
-// The places in a picture nearest to the ray are looked up one after the other, each by the plane of the one before:
-// Newton's method on the distance along the ray, as [shah-caustics-mapping] §III-C does it with the distance alone.
-// Where a surface bends slowly against the size of a texel it converges within three or four steps. From the triangle
-// that is shown there the surface itself leads on to the one that is met: the picture need not show it.
+// Steps along the ray find out where it may pass a surface. There the places in a picture nearest to the ray are looked
+// up one after the other, each by the plane of the one before: Newton's method on the distance along the ray, as
+// [shah-caustics-mapping] §III-C does it with the distance alone. Where a surface bends slowly against the size of a texel
+// it converges within three or four steps. From the triangle that is shown there the surface itself leads on to the one
+// that is met: the picture need not show it.
 #ifndef NEPHROID_LAYERED_VIEW_GLSL
 #define NEPHROID_LAYERED_VIEW_GLSL
 
@@ -29,6 +30,7 @@ struct PicturePlace {
   uint view;    // from 0
   vec2 texels;  // from the corner
   float texel_size;  // m, of a texel on a surface across the view's direction
+  vec3 forward;      // of the view
 };
 
 /// Distances between two steps, in texels, from which on they count as one place.
@@ -40,7 +42,7 @@ const uint kWalk = 16u;
 /// A ray this near to an edge, relative to the triangle, meets both sides' triangles.
 const float kOnEdge = 1e-5;
 
-/// Steps between the ends of a ray where Newton's method finds nothing.
+/// Steps between the ends of a ray.
 const uint kSteps = 16u;
 
 /// Of a place in the world in a view's picture.
@@ -50,14 +52,18 @@ PicturePlace placeInView(ViewRecord view, uint index, vec3 place, float size) {
   bool inside = w > 0.0 && abs(x) <= w && abs(y) <= w;
   float inverse = inside ? 1.0 / w : 0.0;
   vec2 texels = (vec2(x, y) * inverse * 0.5 + 0.5) * size;
-  return PicturePlace(inside, index, min(texels, vec2(size - 1e-3)), 2.0 * max(length(view.right), length(view.up)) * w / size);
+  return PicturePlace(inside, index, min(texels, vec2(size - 1e-3)), 2.0 * max(length(view.right), length(view.up)) * w / size,
+                      view.forward);
 }
 
 /// Of a place in the pictures of views of which no two overlap.
 PicturePlace placeInPictures(Pictures pictures, vec3 place) {
-  PicturePlace found = PicturePlace(false, 0u, vec2(0.0), 0.0);
-  for (uint v = 0u; v < pictures.view_count && !found.inside; ++v)
-    found = placeInView(layer_views[pictures.first_view + v], v, place, pictures.size);
+  PicturePlace found = placeInView(layer_views[pictures.first_view], 0u, place, pictures.size);
+  // Without a break: the compiler then knows each view's place in the buffer, and reads it once for all threads.
+  for (uint v = 1u; v < pictures.view_count; ++v) {
+    PicturePlace other = placeInView(layer_views[pictures.first_view + v], v, place, pictures.size);
+    if (!found.inside) found = other;
+  }
   return found;
 }
 
@@ -105,35 +111,34 @@ Met walkToRay(Ray ray, uvec2 seen, vec3 place, float near) {
 struct Look {
   bool inside;       // the picture has that place
   bool shown;        // and there is a surface
-  uvec2 seen;
+  ivec3 texel;
   vec4 surface;
   float texel_size;  // m
   float behind;      // how much farther than the surface the place is, m, along the view
 };
 
-Look lookAt(vec3 place, Pictures pictures, usampler2DArray seen_layers, sampler2DArray surfaces, uint layer) {
-  PicturePlace at = placeInPictures(pictures, place);
-  Look look = Look(at.inside, false, uvec2(0u), vec4(0.0), at.texel_size, 0.0);
-  if (!at.inside) return look;
+/// @param at  of the place, placeInPictures
+Look lookFrom(PicturePlace at, vec3 place, Pictures pictures, sampler2DArray surfaces, uint layer) {
   ivec3 texel = ivec3(ivec2(at.texels), at.view * pictures.layer_count + layer);
-  look.seen = texelFetch(seen_layers, texel, 0).xy;
-  look.surface = texelFetch(surfaces, texel, 0);
-  look.shown = look.seen.x != 0u;
-  look.behind = dot(place - look.surface.xyz, layer_views[pictures.first_view + at.view].forward);
-  return look;
+  vec4 surface = texelFetch(surfaces, texel, 0);
+  bool shown = at.inside && surface.x < kFarAway;
+  return Look(at.inside, shown, texel, surface, at.texel_size, shown ? dot(place - surface.xyz, at.forward) : 0.0);
+}
+
+Look lookAt(vec3 place, Pictures pictures, sampler2DArray surfaces, uint layer) {
+  return lookFrom(placeInPictures(pictures, place), place, pictures, surfaces, layer);
 }
 
 /// Newton's method from a place on the ray, and from where that ends over the surface to the ray.
 /// @return  nothing if it leads nowhere, or to where the ray starts
 Met approach(Ray ray, float first, Start start, Pictures pictures, usampler2DArray seen_layers,
              sampler2DArray surfaces, uint layer, uint iterations) {
-  float t = first, last = first;
-  uvec2 seen = uvec2(0u);
+  float t = first, last = first, texel_size = 0.0;
+  ivec3 texel = ivec3(0);
   vec3 place = vec3(0.0);
-  float texel_size = 0.0;
-  bool converged = false, lost = false;
+  bool found = false, converged = false, lost = false;
   for (uint i = 0u; i < iterations && !converged && !lost; ++i) {
-    Look look = lookAt(ray.origin + t * ray.dir, pictures, seen_layers, surfaces, layer);
+    Look look = lookAt(ray.origin + t * ray.dir, pictures, surfaces, layer);
     if (!look.shown) {
       // Too far, or past an edge: half-way back to where something was.
       lost = i == 0u;
@@ -147,61 +152,105 @@ Met approach(Ray ray, float first, Start start, Pictures pictures, usampler2DArr
     float next = abs(along) > 0.02 ? dot(normal, to) / along : length(to);
     if (next < 0.0) next = length(to);
     converged = i > 0u && abs(next - t) <= kConverged * look.texel_size;
-    seen = look.seen;
+    found = true;
+    texel = look.texel;
     place = look.surface.xyz;
     texel_size = look.texel_size;
     last = t;
     t = next;
   }
   Met none = Met(kFarAway, 0.0, 0.0, kNowhere, 0u);
-  if (seen.x == 0u) return none;
-  Met met = walkToRay(ray, seen, place, 2.0 * texel_size);
+  if (!found) return none;
+  Met met = walkToRay(ray, texelFetch(seen_layers, texel, 0).xy, place, 2.0 * texel_size);
   bool starts_there = met.instance == start.instance && met.triangle == start.triangle;
   // So near to where it starts it can only be the surface that it starts from, by rounding.
   return met.t > 1e-2 * texel_size && !starts_there ? met : none;
 }
 
-/// Along a ray, the surface of one layer: by Newton's method, and where that finds none by steps, looking for where the
-/// ray passes from one side of what is seen to the other, and Newton's method there.
-/// @param t_end   where the ray leaves the scene
-/// @param hidden  set if it leaves the pictures before
-Met meetLayer(Ray ray, float t_end, Start start, Pictures pictures, usampler2DArray seen_layers, sampler2DArray surfaces, uint layer,
-              uint iterations, inout bool hidden) {
-  Met met = approach(ray, 0.0, start, pictures, seen_layers, surfaces, layer, iterations);
-  if (met.instance != kNowhere) return met;
-  Look before = lookAt(ray.origin, pictures, seen_layers, surfaces, layer);
-  float t_before = 0.0;
-  // A step more than to where the ray leaves the scene: what it meets there may bound the scene.
-  for (uint i = 1u; i <= kSteps + 1u && met.instance == kNowhere; ++i) {
-    float share_of_way = float(i) / float(kSteps), t = t_end * share_of_way * share_of_way;
-    Look look = lookAt(ray.origin + t * ray.dir, pictures, seen_layers, surfaces, layer);
-    bool crosses = before.shown && look.shown && (before.behind > 0.0) != (look.behind > 0.0);
-    // Or it passes the outline of something round, which bends away there.
-    if (crosses || before.shown != look.shown) {
-      float share = crosses ? before.behind / (before.behind - look.behind) : before.shown ? 0.0 : 1.0;
-      met = approach(ray, mix(t_before, t, share), start, pictures, seen_layers, surfaces, layer, iterations);
-      // Past an edge nothing is met.
-      if (met.t < t_before || met.t > t + max(look.texel_size, before.texel_size))
-        met = Met(kFarAway, 0.0, 0.0, kNowhere, 0u);
-    }
-    if (!look.inside) {
-      hidden = hidden || (i <= kSteps && met.instance == kNowhere);
-      return met;
-    }
-    before = look;
-    t_before = t;
+/// What all layers show of a place: a bit for each.
+struct Sides {
+  bool inside;
+  uint shown;
+  uint behind;  // the place is farther than the surface
+  uint near;    // within two texels of it
+  float texel_size;
+};
+
+Sides sidesOf(vec3 place, Pictures pictures, sampler2DArray surfaces) {
+  PicturePlace at = placeInPictures(pictures, place);
+  Sides sides = Sides(at.inside, 0u, 0u, 0u, at.texel_size);
+  for (uint layer = 0u; layer < pictures.layer_count; ++layer) {
+    Look look = lookFrom(at, place, pictures, surfaces, layer);
+    sides.shown |= look.shown ? 1u << layer : 0u;
+    sides.behind |= look.behind > 0.0 ? 1u << layer : 0u;
+    sides.near |= look.shown && abs(look.behind) <= 2.0 * look.texel_size ? 1u << layer : 0u;
   }
-  return met;
+  return sides;
 }
 
-/// The nearest over all layers.
-Met meetLayers(Ray ray, float t_end, Start start, Pictures pictures, usampler2DArray seen_layers, sampler2DArray surfaces,
-               uint iterations, inout bool hidden) {
-  Met best = Met(kFarAway, 0.0, 0.0, kNowhere, 0u);
-  for (uint layer = 0u; layer < pictures.layer_count; ++layer) {
-    Met met = meetLayer(ray, t_end, start, pictures, seen_layers, surfaces, layer, iterations, hidden);
-    if (met.t < best.t) best = met;
+/// A walk along a ray, step by step.
+struct March {
+  uint step;
+  float t_before;
+  float t;
+  Sides before;
+  uint candidates;    // layers that the ray may have passed in the last step
+  uint shown_at_end;  // of these, those that are shown where it ends; the others where it begins
+  bool hidden;      // it left the pictures before the scene
+};
+
+/// The distance after so many steps: short ones first, where surfaces are near.
+float distanceAfter(uint step, float t_end) {
+  float share = float(step) / float(kSteps);
+  return t_end * share * share;
+}
+
+/// On to the next step in which the ray passes from one side of what is seen to the other, or past the outline of
+/// something round, which bends away there.
+void marchOn(inout March march, Ray ray, float t_end, Pictures pictures, sampler2DArray surfaces) {
+  // A step more than to where the ray leaves the scene: what it meets there may bound the scene.
+  while (march.candidates == 0u && march.step <= kSteps) {
+    ++march.step;
+    march.t_before = march.t;
+    march.t = distanceAfter(march.step, t_end);
+    Sides now = sidesOf(ray.origin + march.t * ray.dir, pictures, surfaces);
+    // Where it starts on a surface, the next step tells on which side.
+    if (march.step == 1u) march.before.behind = (march.before.behind & ~march.before.near) | (now.behind & march.before.near);
+    march.candidates = ((march.before.behind ^ now.behind) & march.before.shown & now.shown) |
+                       (march.before.shown ^ now.shown);
+    march.shown_at_end = now.shown;
+    if (!now.inside) {
+      march.hidden = march.step <= kSteps;
+      march.step = kSteps + 1u;
+    }
+    march.before = now;
   }
+}
+
+/// The nearest surface over all layers, by steps to where the ray may pass one, and Newton's method there.
+/// @param t_end   where the ray leaves the scene
+/// @param hidden  set if it leaves the pictures before
+Met meetLayers(Ray ray, float t_end, Start start, Pictures pictures, usampler2DArray seen_layers,
+               sampler2DArray surfaces, uint iterations, inout bool hidden) {
+  Met best = Met(kFarAway, 0.0, 0.0, kNowhere, 0u);
+  March march = March(0u, 0.0, 0.0, sidesOf(ray.origin, pictures, surfaces), 0u, 0u, false);
+  while (best.instance == kNowhere && (march.step <= kSteps || march.candidates != 0u)) {
+    marchOn(march, ray, t_end, pictures, surfaces);
+    // One layer after the other, of those that were passed in the same step.
+    do {
+      uint layer = uint(max(findLSB(march.candidates), 0));
+      bool any_left = march.candidates != 0u;
+      march.candidates &= ~(1u << layer);
+      if (any_left) {
+        float first = (march.shown_at_end >> layer & 1u) != 0u ? march.t : march.t_before;
+        Met met = approach(ray, first, start, pictures, seen_layers, surfaces, layer, iterations);
+        // What is met lies in the step, or Newton's method has led to another place.
+        float slack = 2.0 * march.before.texel_size;
+        if (met.t >= march.t_before - slack && met.t <= march.t + slack && met.t < best.t) best = met;
+      }
+    } while (march.candidates != 0u);
+  }
+  hidden = hidden || (march.hidden && best.instance == kNowhere);
   return best;
 }
 

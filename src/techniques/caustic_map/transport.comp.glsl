@@ -13,12 +13,18 @@ layout(push_constant, scalar) uniform Push { TransportPush push; };
 
 layout(scalar, set = 0, binding = 7) readonly buffer LayerViews { ViewRecord layer_views[]; };
 layout(set = 0, binding = 16) uniform usampler2D neighbour_table;
-#include "techniques/caustic_map/layered_view.glsl"
+layout(constant_id = 21) const uint kSearch = kSearchPlanes;
+layout(constant_id = 22) const uint kExit = kExitPlanes;
+#include "techniques/caustic_map/receiver_search.glsl"
 #include "frame/emission.shared.h"
 #define NEPHROID_PHOTON_BINDING 14
 #include "frame/photons.glsl"
 
 layout(constant_id = 20) const bool kAccounts = false;  // keeps the ledger's accounts: costs time
+layout(constant_id = 23) const uint kGeneratorViews = 1u;
+layout(constant_id = 24) const uint kGeneratorLayers = 1u;
+layout(constant_id = 25) const uint kReceiverViews = 1u;
+layout(constant_id = 26) const uint kReceiverLayers = 1u;
 layout(local_size_x = 8, local_size_y = 8) in;
 layout(scalar, set = 0, binding = 8) readonly buffer Lights { LightRecord lights[]; };
 layout(set = 0, binding = 9) uniform usampler2DArray first_seen;  // of the emission's views: all that there is
@@ -38,6 +44,9 @@ struct Flight {
   bool decided;         // the branch has nothing more to say
   int closed;           // closed solids that it is inside of
   float last_distance;  // m, since the last event
+  vec3 place;           // on what was met last
+  vec3 normal;          // of what was bent at last, and the direction before
+  vec3 from;
   PhotonAccount account;
 };
 
@@ -117,10 +126,16 @@ void bend(inout Flight flight, Met met) {
   Medium from = fetchMedium(e.boundary.from), to = fetchMedium(e.boundary.to);
   optics.ior_from = iorOf(from, flight.path.wavelength_nm);
   if (e.crossing.is_solid) optics.ior_to = iorOf(to, flight.path.wavelength_nm);
-  Scattered scattered = scatterSmooth(optics, flight.path.ray.dir, e.surface.shading);
+  // Branches draw the same facets where they share their way.
+  vec2 u = kSceneHasRoughSpecular ? vec2(draw(flight.path), draw(flight.path)) : vec2(0.0);
+  Scattered scattered = kSceneHasRoughSpecular && optics.alpha > 0.0
+                            ? scatterRough(optics, flight.path.ray.dir, e.surface.shading, u)
+                            : scatterSmooth(optics, flight.path.ray.dir, e.surface.shading);
   Way reflected = reflection(scattered, e.surface), transmitted = transmission(scattered, e.surface);
   // Of flux, not of radiance: it does not know the index.
   transmitted.weight /= radianceScale(optics);
+  flight.normal = e.surface.geometric;
+  flight.from = flight.path.ray.dir;
   Choice choice = chooseWay(reflected, transmitted, events, e.crossing.is_solid && !e.crossing.entering, flight);
   if (kAccounts) accountFor(flight, e, optics, scattered, reflected, transmitted, choice);
   flight.chain = hashChain(flight.chain, 2u * met.instance + (choice.way.through ? 1u : 0u));
@@ -141,6 +156,38 @@ void meetGenerator(inout Flight flight, Met met) {
   flight.closed += is_closed ? countSolids(flight.path.interior) - solids : 0;
 }
 
+/// What light neither is bent by nor may pass straight through.
+bool isBlocker(uint instance) {
+  uint passes = kInstanceGenerates | (kSceneHasPassable ? kInstancePassable : 0u);
+  return (fetchInstance(instance).flags & passes) == 0u;
+}
+
+/// Ends the flight on a surface, or leads it straight through, as shadows are: panes tint it, of what is partly there a
+/// share lets it pass.
+void meetReceiver(inout Flight flight, Met met) {
+  Encounter e = arrive(flight, met);
+  flight.chain = hashChain(flight.chain, 2u * met.instance);
+  bool is_first = flight.path.events == 0u;
+  vec3 pass = vec3(0.0);
+  if (kSceneHasPassable && !isBlocker(met.instance)) {
+    bool is_hole = draw(flight.path) >= e.material.coverage;
+    MaterialPoint whole = e.material;
+    whole.coverage = 1.0;
+    pass = is_hole ? vec3(1.0) : passTransmittance(whole, abs(dot(flight.path.ray.dir, e.surface.shading)));
+  }
+  if (!kSceneHasPassable || largest(pass) <= 0.0) {
+    flight.path.ended = true;
+    flight.outcome = is_first ? kOutcomeBlocked : kOutcomeDeposited;
+    return;
+  }
+  vec3 rest = flight.path.throughput * (1.0 - pass);
+  bool own = is_first ? push.branch == 0u : isOwn(flight);
+  if (kAccounts && own && is_first) flight.account.blocked += rest;
+  if (kAccounts && own && !is_first) flight.account.other_way += rest;
+  flight.path.throughput *= pass;
+  flight.path.ray = startFrom(e.surface, flight.path.ray.dir);
+}
+
 /// Follows the flight to infinity.
 void depart(inout Flight flight) {
   vec3 before = flight.path.throughput;
@@ -154,9 +201,22 @@ Met meetNext(inout Flight flight, Pictures generators, Pictures receivers) {
   Ray ray = flight.path.ray;
   Start start = Start(flight.path.instance, flight.path.triangle);
   float t_end = leaveBox(ray, push.generator_lower, push.generator_upper);
-  Met met = meetLayers(ray, t_end, start, generators, generator_seen, generator_surfaces, push.iterations, hidden);
+  Met met = Met(kFarAway, 0.0, 0.0, kNowhere, 0u);
+  bool has_entered = flight.path.events == 1u && dot(ray.dir, flight.normal) < 0.0 && generators.layer_count > 1u;
+  if (kExit == kExitWyman && has_entered)
+    met = meetBackFace(ray, flight.normal, flight.from, generators, generator_seen, generator_surfaces);
+  else
+    met = meetLayers(ray, t_end, start, generators, generator_seen, generator_surfaces, push.iterations, hidden);
   t_end = leaveBox(ray, push.scene_lower, push.scene_upper);
-  Met receiver = meetLayers(ray, t_end, start, receivers, receiver_seen, receiver_surfaces, push.iterations, hidden_receiver);
+  Met receiver;
+  if (kSearch == kSearchPlanes) {
+    receiver = meetLayers(ray, t_end, start, receivers, receiver_seen, receiver_surfaces, push.receiver_iterations,
+                          hidden_receiver);
+    flight.place = ray.origin + receiver.t * ray.dir;
+  } else {
+    receiver = searchReceiver(ray, t_end, push.first_guess, receivers, receiver_seen, receiver_surfaces, 0u,
+                              push.receiver_iterations, flight.place);
+  }
   // From inside a closed solid there is no way but through its surface: a receiver farther on is not met.
   bool is_enclosed = flight.closed > 0 && met.instance == kNowhere;
   if (receiver.t < met.t) met = receiver;
@@ -164,6 +224,7 @@ Met meetNext(inout Flight flight, Pictures generators, Pictures receivers) {
     flight.outcome = is_enclosed || hidden || hidden_receiver ? kOutcomeHidden : kOutcomeEscaped;
     flight.path.ended = true;
     if (flight.outcome == kOutcomeEscaped) depart(flight);
+    if (flight.outcome == kOutcomeEscaped && flight.path.events == 0u) flight.outcome = kOutcomeMissed;
   }
   return met;
 }
@@ -181,12 +242,12 @@ void leaveToOthers(inout Flight flight) {
   }
 }
 
-Photon describe(Flight flight, vec3 place, uint index) {
+Photon describe(Flight flight, uint index) {
   Photon photon;
   bool valid = flight.outcome == kOutcomeDeposited;
   uint flags = (valid ? kPhotonValid : 0u) | (flight.outcome == kOutcomeEscaped ? kPhotonLeftScene : 0u) |
                (flight.outcome << kOutcomeShift);
-  photon.position = place;
+  photon.position = valid ? flight.place : flight.path.ray.origin;
   photon.path_length = flight.last_distance;
   photon.direction = flight.path.ray.dir;
   photon.light_band_flags = packLightBandFlags(push.light, push.band, flags);
@@ -206,23 +267,22 @@ void main() {
   EmissionRay emitted = emissionRay(view, film.x, film.y);
   vec3 flux = cellFlux(lights[push.light], view, film.x, film.y, 1.0 / float(push.grid * push.grid)) * push.band_weight;
   Ray ray = Ray(emitted.origin, emitted.dir);
-  Path path = Path(ray, flux, false, false, 0u, 0u, push.wavelength_nm, kNowhere, 0u, kInTheOpen);
+  uint seed = hashChain(push.seed, cell.y * push.grid + cell.x);
+  Path path = Path(ray, flux, false, false, 0u, seed, push.wavelength_nm, kNowhere, 0u, kInTheOpen);
   vec3 none = vec3(0.0);
   PhotonAccount account = PhotonAccount(push.branch == 0u ? flux : none, none, none, none, none, none, none, none);
-  Flight flight = Flight(path, 0u, kOutcomeDeposited, 0u, false, 0, 0.0, account);
+  Flight flight = Flight(path, 0u, kOutcomeDeposited, 0u, false, 0, 0.0, ray.origin, none, none, account);
 
-  uvec4 counts = (uvec4(push.pictures) >> uvec4(0u, 8u, 16u, 24u)) & 255u;
-  Pictures generators = Pictures(0u, counts.x, counts.y, push.generator_size);
-  Pictures receivers = Pictures(counts.x, counts.z, counts.w, push.receiver_size);
+  Pictures generators = Pictures(0u, kGeneratorViews, kGeneratorLayers, push.generator_size);
+  Pictures receivers = Pictures(kGeneratorViews, kReceiverViews, kReceiverLayers, push.receiver_size);
   ivec3 texel = ivec3(ivec2((film * 0.5 + 0.5) * push.generator_size), push.view);
   uvec2 seen = texelFetch(first_seen, texel, 0).xy;
   Met met = Met(kFarAway, 0.0, 0.0, kNowhere, 0u);
   if (seen.x != 0u) met = walkToRay(ray, seen, vec3(0.0), 0.0);
   if (met.instance == kNowhere) flight.outcome = kOutcomeMissed;
-  else if ((fetchInstance(met.instance).flags & kInstanceGenerates) == 0u) flight.outcome = kOutcomeBlocked;
+  else if (isBlocker(met.instance)) flight.outcome = kOutcomeBlocked;
   flight.path.ended = flight.outcome != kOutcomeDeposited;
 
-  vec3 place = ray.origin;
   // Surfaces of solids that others rule are no events.
   for (uint i = 0u; i < 2u * max_events && !flight.path.ended; ++i) {
     if (i > 0u) met = meetNext(flight, generators, receivers);
@@ -231,15 +291,12 @@ void main() {
     if ((fetchInstance(met.instance).flags & kInstanceGenerates) != 0u) {
       meetGenerator(flight, met);
     } else {
-      place = flight.path.ray.origin + met.t * flight.path.ray.dir;
-      arrive(flight, met);
-      flight.chain = hashChain(flight.chain, 2u * met.instance);
-      flight.path.ended = true;
+      meetReceiver(flight, met);
     }
   }
   if (!flight.path.ended) flight.outcome = kOutcomeBounceLimit;
   leaveToOthers(flight);
   uint index = cell.y * push.grid + cell.x;
-  photons[index] = describe(flight, place, index);
+  photons[index] = describe(flight, index);
   if (kAccounts) accounts[index] = flight.account;
 }

@@ -20,16 +20,20 @@ Transport::Transport(gpu::Device& device, const SceneBuffers& buffers)
       views_(device, kMostViews * sizeof(ViewRecord), VK_BUFFER_USAGE_STORAGE_BUFFER_BIT, gpu::MemoryIntent::kDevice,
              "views of a light"),
       no_account_(device, sizeof(PhotonAccount), VK_BUFFER_USAGE_STORAGE_BUFFER_BIT, gpu::MemoryIntent::kDevice,
-                  "no accounts") {
-  pipelineFor({});
-}
+                  "no accounts") {}
 
-const gpu::ComputePipeline& Transport::pipelineFor(const TransportSettings& settings) {
-  const std::vector<std::uint32_t> key{settings.account != nullptr ? 1U : 0U};
+const gpu::ComputePipeline& Transport::pipelineFor(const LightPictures& pictures, const TransportSettings& settings) {
+  const std::vector<std::uint32_t> key{settings.account != nullptr ? 1U : 0U,
+                                       static_cast<std::uint32_t>(settings.search),
+                                       static_cast<std::uint32_t>(settings.exit),
+                                       static_cast<std::uint32_t>(pictures.emission_views.size()),
+                                       pictures.generators.layerCount(),
+                                       static_cast<std::uint32_t>(pictures.receiver_views.size()),
+                                       pictures.receivers.layerCount()};
   const auto found = pipelines_.find(key);
   if (found != pipelines_.end()) return found->second;
   std::vector<gpu::Constant> constants = buffers_.traits().pathConstants();
-  constants.push_back({20, key[0]});
+  for (std::uint32_t i = 0; i < key.size(); ++i) constants.push_back({20 + i, key[i]});
   gpu::ComputePipeline pipeline(device_,
                                 {.shader = shaders::transport_comp,
                                  .bindings = SceneBuffers::bindings({kTable, kTable, kTexture, kTexture, kTexture,
@@ -47,30 +51,29 @@ void Transport::record(gpu::CommandRecorder& recorder, const LightPictures& pict
   std::vector<ViewRecord> views(pictures.emission_views.begin(), pictures.emission_views.end());
   views.insert(views.end(), pictures.receiver_views.begin(), pictures.receiver_views.end());
   recorder.upload(views_, std::as_bytes(std::span(views)));
-  const TransportPush push{
-      .grid = settings.grid,
-      .light = light,
-      .view = view,
-      .branch = settings.branch,
-      .max_events = settings.max_events,
-      .offset = settings.offset,
-      .pictures =
-          packCounts(static_cast<std::uint32_t>(pictures.emission_views.size()), pictures.generators.layerCount(),
-                     static_cast<std::uint32_t>(pictures.receiver_views.size()), pictures.receivers.layerCount()),
-      .generator_size = static_cast<float>(pictures.generators.size()),
-      .receiver_size = static_cast<float>(pictures.receivers.size()),
-      .iterations = settings.iterations,
-      .is_last = settings.is_last ? 1U : 0U,
-      .wavelength_nm = settings.band.wavelength_nm,
-      .band_weight = settings.band.weight,
-      .band = settings.band_index,
-      .generator_lower = pictures.generator_bounds.lower,
-      .generator_upper = pictures.generator_bounds.upper,
-      .scene_lower = pictures.scene_bounds.lower,
-      .scene_upper = pictures.scene_bounds.upper};
+  const TransportPush push{.grid = settings.grid,
+                           .light = light,
+                           .view = view,
+                           .branch = settings.branch,
+                           .max_events = settings.max_events,
+                           .offset = settings.offset,
+                           .generator_size = static_cast<float>(pictures.generators.size()),
+                           .receiver_size = static_cast<float>(pictures.receivers.size()),
+                           .iterations = settings.iterations,
+                           .receiver_iterations = settings.receiver_iterations,
+                           .first_guess = settings.first_guess,
+                           .is_last = settings.is_last ? 1U : 0U,
+                           .wavelength_nm = settings.band.wavelength_nm,
+                           .band_weight = settings.band.weight,
+                           .band = settings.band_index,
+                           .seed = settings.seed,
+                           .generator_lower = pictures.generator_bounds.lower,
+                           .generator_upper = pictures.generator_bounds.upper,
+                           .scene_lower = pictures.scene_bounds.lower,
+                           .scene_upper = pictures.scene_bounds.upper};
   const gpu::Buffer& target = photons.chunks()[0].buffer;
   const gpu::Buffer& account = settings.account != nullptr ? *settings.account : no_account_;
-  const gpu::ComputePipeline& pipeline = pipelineFor(settings);
+  const gpu::ComputePipeline& pipeline = pipelineFor(pictures, settings);
   const std::vector<Use> uses = buffers_.uses(
       Access::kComputeRead,
       {Use(views_, Access::kComputeRead), Use(lights, Access::kComputeRead),

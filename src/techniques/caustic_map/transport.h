@@ -22,8 +22,20 @@ struct LightPictures {
   std::span<const ViewRecord> receiver_views;  ///< of everything that light may reach
   const SurfaceLayers& first;                  ///< what the emission's views show of all there is; one layer
   const SurfaceLayers& generators;             ///< what they show of generators
-  const SurfaceLayers& receivers;              ///< what the others show of all that is no generator, black things too
+  const SurfaceLayers& receivers;              ///< what the others show of all that is no generator: black things
+                                               ///< too, and what lies behind panes if it has several layers
 };
+
+/// How a receiver is found (receiver_search.glsl): the default exactly, the others as the paper does and compares.
+enum class Search : std::uint8_t {
+  kPlanes = kSearchPlanes,    ///< Newton's method on the planes that are seen, then over the surface
+  kIterate = kSearchIterate,  ///< the paper's own
+  kNewton = kSearchNewton,    ///< with finite differences
+  kSecant = kSearchSecant,
+  kMarch = kSearchMarch,
+};
+/// How light leaves what it has entered: exactly, or at the back face that Wyman's approximation finds.
+enum class Exit : std::uint8_t { kPlanes = kExitPlanes, kWyman = kExitWyman };
 
 /// How light is followed.
 struct TransportSettings {
@@ -36,7 +48,12 @@ struct TransportSettings {
   /// Part of the spectrum, of makeBands; wavelength 0: all of it as one, with the indices that materials say.
   Band band{0.0F, vec3(1.0F)};
   std::uint32_t band_index = 0;
-  std::uint32_t iterations = 8;  ///< to find where a ray meets a surface
+  std::uint32_t seed = 0;                 ///< of the facets of rough surfaces: another one for each frame
+  std::uint32_t iterations = 8;           ///< to find where a ray meets a generator,
+  std::uint32_t receiver_iterations = 8;  ///< and a receiver
+  Search search = Search::kPlanes;
+  Exit exit = Exit::kPlanes;
+  float first_guess = 0.0F;  ///< of the paper's methods, m; 0: what is seen where the ray starts
   /// For the ledger (PhotonLedger::account): what stays on the way. Of no use without it, and it takes time.
   const gpu::Buffer* account = nullptr;
   bool is_last = false;  ///< no branch beyond this one is followed: for the account
@@ -57,7 +74,7 @@ class Transport {
               std::uint32_t light, std::uint32_t view, const TransportSettings& settings, const PhotonBuffer& photons);
 
  private:
-  const gpu::ComputePipeline& pipelineFor(const TransportSettings& settings);
+  const gpu::ComputePipeline& pipelineFor(const LightPictures& pictures, const TransportSettings& settings);
 
   gpu::Device& device_;
   const SceneBuffers& buffers_;

@@ -40,8 +40,14 @@ NEPHROID_CONST uint kLedgerKinds = kAccountKinds + kOutcomeCount;
 /// Photons that a thread adds up: few enough that rounding does not count.
 NEPHROID_CONST uint kLedgerRow = 64u;
 
-/// Four numbers below 256.
-NEPHROID_FN uint packCounts(uint a, uint b, uint c, uint d) { return a | (b << 8) | (c << 16) | (d << 24); }
+// How a receiver is found, and the back face of what light has entered: see receiver_search.glsl.
+NEPHROID_CONST uint kSearchPlanes = 0u;  // layered_view.glsl
+NEPHROID_CONST uint kSearchIterate = 1u;
+NEPHROID_CONST uint kSearchNewton = 2u;
+NEPHROID_CONST uint kSearchSecant = 3u;
+NEPHROID_CONST uint kSearchMarch = 4u;
+NEPHROID_CONST uint kExitPlanes = 0u;
+NEPHROID_CONST uint kExitWyman = 1u;
 
 struct TransportPush {
   uint grid;    // cells along a side of a view's grid
@@ -49,15 +55,17 @@ struct TransportPush {
   uint view;    // of the emission, among those of the light
   uint branch;  // 0: reflected at the first surface; b >= 1: enters, and leaves at its b-th chance
   uint max_events;
-  vec2 offset;    // of the photon in its cell, in [0, 1)
-  uint pictures;  // their counts, by packCounts
+  vec2 offset;  // of the photon in its cell, in [0, 1)
   float generator_size;
   float receiver_size;
   uint iterations;
+  uint receiver_iterations;
+  float first_guess;    // m; of receiver_search.glsl
   uint is_last;         // no other branch has what stays inside
   float wavelength_nm;  // of the band; 0: nothing disperses
   vec3 band_weight;     // of the light's flux
   uint band;
+  uint seed;             // of microfacets
   vec3 generator_lower;  // bounds of what casts caustics, and of everything
   vec3 generator_upper;
   vec3 scene_lower;

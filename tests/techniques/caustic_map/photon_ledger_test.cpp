@@ -38,8 +38,8 @@ TEST_F(PhotonLedgerTest, ClosesForSolidsAndMetal) {
   Material varnished = test::makeDiffuse(vec3(0.5F, 0.4F, 0.3F));
   varnished.metallic = 0.5F;
   varnished.roughness = 0.0F;
-  for (const Material& material :
-       {test::makeGlass(1.5F), makeColoured(), test::makeMetal(vec3(0.9F, 0.6F, 0.3F)), varnished}) {
+  for (const Material& material : {test::makeGlass(1.5F), makeColoured(), test::makeMetal(vec3(0.9F, 0.6F, 0.3F)),
+                                   varnished, test::makeGlass(1.5F, 0.4F), test::makeMetal(vec3(0.9F), 0.3F)}) {
     SceneData scene = test::makeBallScene(material, 64);
     test::addObject(scene, makeBox("cube", dvec3(1.2, 1, -0.5), dvec3(2.2, 2, 0.5)), material);
     scene.lights.push_back(test::makeSun(vec3(-0.7F, -1, 0.2F), vec3(2, 3, 5)));
@@ -104,6 +104,37 @@ TEST_F(PhotonLedgerTest, AgreesWithTheReferenceForABall) {
       EXPECT_NEAR(ledger.absorbed[c] / reference.absorbed[c], 1.0, 0.01);
       EXPECT_NEAR(ledger.escaped[c] / reference.escaped[c], 1.0, 0.02);
     }
+  }
+}
+
+TEST_F(PhotonLedgerTest, AgreesWithTheReferenceForRoughBalls) {
+  for (const Material& material : {test::makeGlass(1.5F, 0.4F), test::makeMetal(vec3(0.9F), 0.4F)}) {
+    SCOPED_TRACE(material.name);
+    SceneData scene = test::makeBallScene(material, 128);
+    scene.lights.push_back(test::makeSun(vec3(-0.4F, -1, -0.2F), vec3(3)));
+    LightRig rig(device(), scene, 192);
+    const Ledger ledger = rig.ledger(5, {.max_events = 12, .seed = 3}), reference = referenceLedger(scene);
+    expectCloses(ledger);
+    EXPECT_NEAR(ledger.deposited.y / reference.deposited.y, 1.0, 0.02);
+    const dvec3 facets = lostTo(ledger, LossReason::kMicrofacet), wanted = lostTo(reference, LossReason::kMicrofacet);
+    EXPECT_NEAR(facets.y / ledger.deposited.y, wanted.y / reference.deposited.y, 0.01);
+  }
+}
+
+TEST_F(PhotonLedgerTest, LightPassesPanesAsShadowsDo) {
+  Material pane = test::makeGlass(1.5F);
+  pane.thickness = 0.0F;
+  pane.base_color = vec4(0.9F, 0.5F, 0.2F, 1.0F);
+  // One before the ball, one between it and the floor.
+  for (const double height : {2.6, 0.1}) {
+    SCOPED_TRACE(height);
+    SceneData scene = test::makeBallScene(test::makeGlass(1.5F), 128);
+    test::addObject(scene, makeRectangle("pane", dvec3(0, height, 0), dvec3(0, 0, 6), dvec3(6, 0, 0)), pane);
+    scene.lights.push_back(test::makeSun(vec3(-0.2F, -1, -0.1F), vec3(3)));
+    LightRig rig(device(), scene, 192);
+    const Ledger ledger = rig.ledger(4, {.max_events = 12}), reference = referenceLedger(scene);
+    expectCloses(ledger);
+    for (int c = 0; c < 3; ++c) EXPECT_NEAR(ledger.deposited[c] / reference.deposited[c], 1.0, 0.03) << c;
   }
 }
 
