@@ -323,6 +323,27 @@ TEST_F(SpecularTest, WhatLiesBetweenFollowedPixelsIsWhatTheySee) {
   }
 }
 
+TEST_F(SpecularTest, EveryPixelIsShownOnceWhateverTheCells) {
+  SceneData scene;
+  test::addObject(scene, test::makeFloor(2.0), test::makeMetal(vec3(1.0F)));
+  test::addObject(scene, makeWall(), makeGlow(vec3(1)));
+  struct Size {
+    int width, height;
+  };
+  for (const std::uint32_t spacing : {3U, 4U}) {
+    FrameSettings settings = makeSettings(8, 12);
+    settings.specular_spacing = spacing;
+    RealtimeFrame frame(device(), scene, lookAslant(0.5F), settings);
+    for (const Size size : {Size{1, 1}, Size{1, 9}, Size{2, 2}, Size{5, 4}, Size{37, 22}}) {
+      frame.resize(size.width, size.height);
+      // All places of the grid.
+      for (std::uint32_t s = 0; s < 16; ++s) frame.render(s);
+      for (const float value : frame.readSummed("specular").pixels)
+        ASSERT_NEAR(value, 1.0F, 1e-5F) << size.width << " x " << size.height << " by " << spacing;
+    }
+  }
+}
+
 TEST_F(SpecularTest, WhatLiesBetweenConverges) {
   // The grid goes through all its places, and what chance decides is the same mean: of a lit checker in glass and
   // metal.
