@@ -18,6 +18,7 @@ using glm::mat3;
 using glm::mat4;
 using glm::normalize;
 using glm::quat;
+using glm::uvec2;
 using glm::uvec3;
 using glm::vec2;
 using glm::vec3;

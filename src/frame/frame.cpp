@@ -158,9 +158,17 @@ void RealtimeFrame::makeSpecular() {
   if (!tree_) tree_ = std::make_unique<TriangleTree>(device_, recorder_, scene_, settings_.box_tree_builder);
   const SpecularPass::Inputs inputs{camera_view_,         seen_,         tint_, lamps_, environment_,
                                     environment_sampler_, *light_grids_, *tree_};
-  specular_ =
-      std::make_unique<SpecularPass>(device_, recorder_, *buffers_, inputs, lightConstants(), settings_.max_events);
+  specular_ = std::make_unique<SpecularPass>(
+      device_, recorder_, *buffers_, inputs, lightConstants(),
+      SpecularPass::Following{.max_events = settings_.max_events, .spacing = specularSpacing()});
   recorder_.submit();
+}
+
+std::uint32_t RealtimeFrame::specularSpacing() const {
+  // What chance decides in each pixel, and small bright lamps, do not lie between the pixels beside.
+  const SceneTraits& traits = buffers_->traits();
+  const bool varies = traits.passable || traits.specular.rough || traits.specular.disperses || lamps_compiled_;
+  return varies ? 1 : settings_.specular_spacing;
 }
 
 void RealtimeFrame::makeCaustic() {

@@ -33,6 +33,8 @@ struct FrameSettings {
   bool specular = true;             ///< makes that layer, which takes longer than all others
   BoxTreeBuilder box_tree_builder;  ///< for `specular`, which is not made without one
   std::uint32_t max_events = 12;    ///< of class S, in what is seen in mirrors and through glass
+  std::uint32_t specular_spacing =
+      4;  ///< pixels between those from which mirrors and glass are followed, 1 to 4; 1: all
   std::uint32_t seed = 0;
   Rasteriser rasteriser = Rasteriser::kAuto;
 };
@@ -92,6 +94,8 @@ class RealtimeFrame {
   void makeTargets();
   void makePasses();
   void makeSpecular();
+  /// FrameSettings::specular_spacing, or 1 where the scene forbids cells.
+  std::uint32_t specularSpacing() const;
   void makeCaustic();
   /// Null if the frame does not make it.
   const gpu::Image* sumOf(const std::string& layer) const;

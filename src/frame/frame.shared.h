@@ -82,6 +82,7 @@ NEPHROID_CONST uint kMaterialDoubleSided = 4u;  // of emission only
 NEPHROID_CONST uint kMaterialIsMask = 8u;       // alpha decides whether the surface is there
 NEPHROID_CONST uint kMaterialIsBlend = 16u;     // alpha is how much of it is there
 NEPHROID_CONST uint kMaterialIsSpecular = 32u;  // has a lobe of class S, or textures may give it one
+NEPHROID_CONST uint kMaterialVaries = 64u;      // by textures
 
 /// How a material uses an image.
 struct TextureRecord {

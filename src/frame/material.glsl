@@ -83,6 +83,7 @@ struct MaterialPoint {
   float coverage;        // share of the surface that is there
   float base_weight;     // baseWeight; of a mirror it is 0 even where the shader leaves out metals
   bool double_sided;     // of emission
+  bool varies;           // with the place, by textures or colours of vertices
 };
 
 /// @param m  its factors; @return  with what textures say at the point
@@ -100,6 +101,7 @@ MaterialPoint resolveMaterial(MaterialRecord m, Coordinates at) {
   MaterialPoint p;
   p.emission = m.emission;
   p.double_sided = (m.flags & kMaterialDoubleSided) != 0u;
+  p.varies = kSceneHasTextures && (m.flags & kMaterialVaries) != 0u;
   p.coverage = 1.0;
   if ((m.flags & kMaterialIsMask) != 0u) p.coverage = base.w >= m.alpha_cutoff ? 1.0 : 0.0;
   if ((m.flags & kMaterialIsBlend) != 0u) p.coverage = clamp(base.w, 0.0, 1.0);
@@ -130,7 +132,9 @@ MaterialPoint resolveMaterial(MaterialRecord m, Coordinates at) {
 MaterialPoint materialAt(InstanceRecord instance, uint triangle, float u, float v) {
   Coordinates at = Coordinates(vec2[2](vec2(0.0), vec2(0.0)), vec4(1.0));
   if (kSceneHasTextures) at = coordinatesAt(instance, triangle, u, v);
-  return resolveMaterial(fetchMaterial(instance.material), at);
+  MaterialPoint point = resolveMaterial(fetchMaterial(instance.material), at);
+  point.varies = point.varies || (kSceneHasTextures && instance.colors != kNowhere);
+  return point;
 }
 
 /// What goes straight through a surface without an event: holes and smooth thin-walled transmission. As

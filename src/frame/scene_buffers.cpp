@@ -86,6 +86,13 @@ class TexelTables {
   std::vector<vec4> floats_;
 };
 
+bool hasTextures(const Material& m) {
+  const TextureRef* references[] = {&m.base_color_texture,    &m.metallic_roughness_texture, &m.normal_texture,
+                                    &m.emission_texture,      &m.transmission_texture,       &m.specular_texture,
+                                    &m.specular_color_texture};
+  return std::ranges::any_of(references, [](const TextureRef* reference) { return reference->valid(); });
+}
+
 MaterialRecord describeMaterial(const Material& m, TexelTables& texels, float specular_alpha) {
   MaterialRecord record{};
   record.base = m.base_color;
@@ -106,6 +113,7 @@ MaterialRecord describeMaterial(const Material& m, TexelTables& texels, float sp
   if (m.alpha_mode == AlphaMode::kMask) record.flags |= kMaterialIsMask;
   if (m.alpha_mode == AlphaMode::kBlend) record.flags |= kMaterialIsBlend;
   if (isSpecular(m, specular_alpha)) record.flags |= kMaterialIsSpecular;
+  if (hasTextures(m)) record.flags |= kMaterialVaries;
   record.alpha_cutoff = m.alpha_cutoff;
   record.normal_scale = m.normal_scale;
   record.base_texture = texels.add(m.base_color_texture);
@@ -196,9 +204,16 @@ std::vector<gpu::Constant> SceneTraits::constants() const {
 }
 
 std::vector<gpu::Constant> SceneTraits::pathConstants() const {
-  return {{0, specular.metal},     {1, true},           {2, conductors},         {3, textures},
-          {4, passable},           {8, specular.rough}, {9, specular.transmits}, {10, specular.media},
-          {11, specular.disperses}};
+  return {{0, specular.metal},
+          {1, true},
+          {2, conductors},
+          {3, textures},
+          {4, passable},
+          {8, specular.rough},
+          {9, specular.transmits},
+          {10, specular.media},
+          {11, specular.disperses},
+          {19, metal || gloss}};
 }
 
 SceneBuffers::SceneBuffers(gpu::Device& device, gpu::CommandRecorder& recorder, const SceneData& scene,

@@ -1,8 +1,14 @@
-// One frame's sample of `specular`: what mirrors, glass and water show.
+// One frame's sample of `specular`: what mirrors, glass and water show, surface by surface.
 //
-// From each listed pixel two chains are followed, one that the first surface reflects and one that it lets through; at
-// every further surface one way on is drawn in proportion to what it carries, so that the mean over frames is the sum of
-// all. A chain ends on the first surface that it is drawn to see lit (class D), or where it leaves the scene.
+// From each listed pixel two chains are followed, one that the first surface reflects and one that it lets through. A
+// chain ends on the first surface that it sees lit (class D), or where it leaves the scene. What becomes of it at every
+// further surface is one of three tasks, each a pipeline of its own:
+//
+// - kShowAll: one way on is drawn in proportion to what it carries, so that the mean over frames is the sum of all.
+// - kFollowMost: at points of the grid, the way that carries most; where that ends is noted (specular_ends.glsl), and
+//   specular_lit.comp.glsl shows it in those pixels of a cell that kShowAll would have drawn it in.
+// - kShowOthers: in the other pixels of a cell: it goes the same way, up to a surface at which it is drawn to take
+//   another, and on from there as kShowAll.
 //
 // One loop follows both chains, one after the other: of threads that go in step, none waits for the others between them.
 #version 460
@@ -14,23 +20,42 @@
 #include "frame/passable.glsl"
 #include "frame/specular_push.glsl"
 #include "frame/path.glsl"
-#define NEPHROID_TREE_BINDINGS 18
+#define NEPHROID_TREE_BINDINGS 17
 #include "frame/triangle_tree.glsl"
 #define NEPHROID_SKY_BINDINGS 14
 #include "frame/sky.glsl"
+#define NEPHROID_GRID_BINDINGS 19
+#include "frame/specular_grid.glsl"
+#include "frame/specular_ends.glsl"
+#include "frame/specular_others.glsl"
 
 layout(local_size_x = 64) in;
 layout(scalar, set = 0, binding = 11) readonly buffer Views { ViewRecord views[]; };
-layout(set = 0, binding = 12) uniform usampler2D seen_image;
+layout(set = 0, binding = 12, rgba32ui) writeonly uniform uimage2D end_image;
 layout(set = 0, binding = 13) uniform sampler2D band_table;  // wavelength in nm, and weight times their count
-layout(scalar, set = 0, binding = 16) readonly buffer Pixels { uint pixel_count; uint pixels[]; };
-layout(set = 0, binding = 17, rgba32f) uniform image2D specular_image;  // sum over samples, W/m²/sr
+layout(set = 0, binding = 16, rgba32f) uniform image2D specular_image;  // sum over samples, W/m²/sr
+
+const uint kShowAll = 0u;
+const uint kFollowMost = 1u;
+const uint kShowOthers = 2u;
+layout(constant_id = 17) const uint kTask = kShowAll;
 
 /// What a pixel's chains have come to.
 struct Chains {
   Path path;      // that is followed
   Path other;     // to follow when that has ended: the other way on from the first surface
   vec3 radiance;  // of both so far, W/m²/sr
+  uint skipped;   // kNo…: not to be followed
+  // Not of kShowAll:
+  uint way;       // of the first surface that `path` took: kReflected, kTransmitted
+  uint met;       // hash of the surfaces met by `path`, and the ways taken
+  uint met_first;  // of the first of them
+  bool unsure;     // pixels nearby may show something else than the hash tells
+  bool unsure_first;
+  bool escaped;   // `path` has left the scene
+  float others;    // chance with which `path` would have been drawn to take another way somewhere
+  bool deviates;   // kShowOthers: it has
+  float to_pass;   // kShowOthers: takeOther's
 };
 
 /// What a chain was drawn to see lit.
@@ -74,42 +99,98 @@ vec3 lobeLight(Surface s, SurfaceOptics optics, vec3 wo) {
   return sum;
 }
 
-/// Chances of the ways on from a surface.
+/// How much light the ways on from a surface carry, or the chances with which they are taken.
 struct Ways {
   float reflected;
   float transmitted;
   float lit;  // to see the surface itself
 };
 
+/// By flux: then a chain through glass that loses nothing carries the same after each surface.
 Ways weigh(Path path, Scattered scattered, MaterialPoint m, Surface s, vec3 wo, bool is_specular) {
   if (!is_specular) return Ways(0.0, 0.0, 1.0);
   float lit = 0.0;
   if (path.events > 0u && m.base_weight > 0.0)
     lit = m.base_weight * luminanceOf(m.optics.base * baseFactor(m.optics, interfaceFresnel(m.optics, dot(wo, s.shading))));
-  // By flux: then a chain through glass that loses nothing has the same throughput after each surface.
-  Ways ways = Ways(luminanceOf(scattered.reflected_weight),
-                   luminanceOf(scattered.transmitted_weight) / radianceScale(m.optics), lit);
+  return Ways(luminanceOf(scattered.reflected_weight),
+              luminanceOf(scattered.transmitted_weight) / radianceScale(m.optics), lit);
+}
+
+Ways scaled(Ways ways, float factor) {
+  return Ways(ways.reflected * factor, ways.transmitted * factor, ways.lit * factor);
+}
+
+/// What is done at a surface.
+struct Choice {
+  bool sees_it;
+  bool through;  // else
+  float chance;  // with which it was drawn
+};
+
+Choice drawWay(Ways ways, float u) {
   float sum = ways.reflected + ways.transmitted + ways.lit;
-  float inverse = sum > 0.0 ? 1.0 / sum : 0.0;
-  return Ways(ways.reflected * inverse, ways.transmitted * inverse, ways.lit * inverse);
+  ways = scaled(ways, sum > 0.0 ? 1.0 / sum : 0.0);
+  bool sees_it = ways.lit > 0.0 && u < ways.lit;
+  bool through = u - ways.lit >= ways.reflected;
+  return Choice(sees_it, through, sees_it ? ways.lit : through ? ways.transmitted : ways.reflected);
+}
+
+/// What kFollowMost and kShowOthers do.
+Choice chooseWay(inout Chains chains, Ways ways, float u) {
+  if (kTask == kShowOthers && chains.deviates) return drawWay(ways, u);
+  vec3 chances = vec3(ways.reflected, ways.transmitted, ways.lit);
+  float sum = chances.x + chances.y + chances.z;
+  chances *= sum > 0.0 ? 1.0 / sum : 0.0;
+  uint taken = mostOf(chances);
+  float chance = chances[taken];
+  vec3 others = chances * vec3(notEqual(uvec3(taken), uvec3(0u, 1u, 2u)));
+  chains.others += (1.0 - chains.others) * (others.x + others.y + others.z);
+  if (kTask == kShowOthers) {
+    uint drawn = takeOther(others, chains.to_pass);
+    if (drawn < 3u) {
+      chains.deviates = true;
+      taken = drawn;
+      chance = others[drawn];
+    }
+  }
+  return Choice(taken == 2u, taken == 1u, chance);
 }
 
 /// Goes on by reflection or transmission; the first time both ways, one of which waits.
-/// @param u  decides, in [0, 1 − chance to see the surface itself)
-void branchOrChoose(inout Chains chains, Way reflected, Way transmitted, Ways ways, float u, Surface s,
-                    Crossing crossing, bool is_smooth_pane) {
+void branchOrChoose(inout Chains chains, Way reflected, Way transmitted, Choice choice, Surface s, Crossing crossing,
+                    bool is_smooth_pane) {
   bool first = !chains.path.branched;
   chains.path.branched = true;
   if (kSceneTransmits && first) {
     chains.other = chains.path;
     chains.other.seed = hashChain(chains.path.seed, 2u);
     take(chains.other, transmitted, s, crossing, is_smooth_pane);
+    if ((chains.skipped & kNoTransmitted) != 0u) chains.other.ended = true;
   }
   Way way = reflected;
-  if (!first && u >= ways.reflected) way = transmitted;
-  float chance = first ? 1.0 : way.through ? ways.transmitted : ways.reflected;
+  if (!first && choice.through) way = transmitted;
+  float chance = first ? 1.0 : choice.chance;
   way.weight *= chance > 0.0 ? 1.0 / chance : 0.0;
   take(chains.path, way, s, crossing, is_smooth_pane);
+  if (first && (chains.skipped & kNoReflected) != 0u) chains.path.ended = true;
+}
+
+/// A surface tells its neighbours apart from others: flat ones face by face, because light makes a jump between them.
+uint identify(Surface s, uint taken) {
+  uint face = s.shading == s.geometric ? packUnitVector(s.geometric) : 0u;
+  return hashChain(hashChain(s.instance_index, face), taken);
+}
+
+/// Is what the chains meet seen, or known already?
+bool isShown(Chains chains) { return kTask == kShowAll || (kTask == kShowOthers && chains.deviates); }
+
+/// Of kFollowMost.
+void noteSurface(inout Chains chains, uint surface, bool is_first, bool unsure) {
+  chains.met = hashChain(chains.met, surface);
+  chains.unsure = chains.unsure || unsure;
+  if (!is_first) return;
+  chains.met_first = chains.met;
+  chains.unsure_first = chains.unsure;
 }
 
 /// What a chain meets at a surface. @return  the surface itself, if it is drawn
@@ -123,12 +204,14 @@ Receiver meet(inout Chains chains, Met met, uvec2 pixel) {
   Boundary boundary = e.boundary;
   Crossing crossing = e.crossing;
   bool is_solid = crossing.is_solid;
-  if (kSceneEmits && path.events > 0u && emission_seen) chains.radiance += path.throughput * m.emission;
+  bool emits = kSceneEmits && path.events > 0u && emission_seen;
+  if (emits && isShown(chains)) chains.radiance += path.throughput * m.emission;
 
   bool hole = m.coverage < 1.0 && chanceOf(pixel, path.events == 0u ? push.frame : path.seed, s, 0u) >= m.coverage;
   bool hidden = is_solid && !boundary.is_event && !hole;
   if (hole || hidden) {
     crossing.is_solid = hidden;
+    if (kTask == kFollowMost) chains.met = hashChain(chains.met, identify(s, 4u));
     passOn(path, s, crossing);
     chains.path = path;
   } else {
@@ -146,27 +229,36 @@ Receiver meet(inout Chains chains, Met met, uvec2 pixel) {
     bool is_rough = kSceneHasRoughSpecular && is_specular && m.optics.alpha > 0.0;
     if (is_rough) chains.radiance += path.throughput * lobeLight(s, m.optics, wo);
     Ways ways = weigh(path, scattered, m, s, wo, is_specular);
-    float choice = draw(path);
-    bool sees_it = ways.lit > 0.0 && choice < ways.lit;
+    float u_way = draw(path);
+    Choice choice;
+    if (kTask == kShowAll || !path.branched) {
+      choice = drawWay(ways, u_way);
+    } else {
+      choice = chooseWay(chains, ways, u_way);
+    }
     chains.path = path;
-    if (sees_it) {
-      receiver = Receiver(path.events > 0u, met.instance, met.triangle, met.u, met.v, -wo, m.optics.ior_from,
-                          path.throughput / ways.lit);
+    if (kTask == kFollowMost)
+      noteSurface(chains, identify(s, !path.branched ? 3u : choice.sees_it ? 2u : choice.through ? 1u : 0u), !path.branched,
+                  is_specular && (m.varies || (emits && !choice.sees_it && m.emission != vec3(0.0))));
+    if (choice.sees_it) {
+      receiver = Receiver(path.events > 0u && (kTask == kFollowMost || isShown(chains)), met.instance, met.triangle, met.u, met.v, -wo, m.optics.ior_from,
+                          path.throughput / choice.chance);
       chains.path.ended = true;
     } else {
-      branchOrChoose(chains, reflection(scattered, s), transmission(scattered, s), ways, choice - ways.lit, s, crossing,
+      branchOrChoose(chains, reflection(scattered, s), transmission(scattered, s), choice, s, crossing,
                      m.optics.is_pane != 0u && m.optics.alpha == 0.0);
     }
   }
   return receiver;
 }
 
-Chains startChains(Ray ray, uvec2 pixel) {
+Chains startChains(Ray ray, uvec2 pixel, uint skipped) {
   uint seed = hashChain(hashChain(0u, pixel.x + (pixel.y << 16)), push.frame);
   Path path = Path(ray, vec3(1.0), false, false, 0u, seed, 0.0, kNowhere, 0u, kInTheOpen);
   Path none = path;
   none.ended = true;
-  return Chains(path, none, vec3(0.0));
+  float to_pass = kTask == kShowOthers ? drawOther(pixel, push.frame, kReflected) : 0.0;
+  return Chains(path, none, vec3(0.0), skipped, kReflected, 0u, 0u, false, false, false, 0.0, false, to_pass);
 }
 
 /// Light that a chain's last surface sends along it.
@@ -174,9 +266,7 @@ vec3 litRadiance(Receiver receiver) {
   Surface s = turnTowards(surfaceMet(receiver.instance, receiver.triangle, receiver.u, receiver.v), receiver.dir);
   MaterialPoint m = materialAt(s.instance, s.triangle, s.u, s.v);
   m.optics.ior_from = receiver.ior_from;
-  vec3 sum = vec3(0.0);
-  for (uint i = 0u; i < push.light_count; ++i) sum += lightFrom(i, s, m, -receiver.dir, push.specular_alpha);
-  return sum * receiver.weight;
+  return receiver.weight * lightFromAll(push.light_count, s, m, -receiver.dir, push.specular_alpha);
 }
 
 /// A step of a chain: to the next surface, or out of the scene. @return  what it was drawn to see lit
@@ -188,58 +278,98 @@ Receiver followStep(inout Chains chains, uvec2 pixel, bool is_first) {
   } else {
     met = meetFirst(chains.path.ray, chains.path.instance, chains.path.triangle);
   }
-  bool shows_lights = chains.path.events > 0u;
+  bool shows_lights = chains.path.events > 0u && isShown(chains);
   if (kSceneHasLamps && shows_lights) chains.radiance += chains.path.throughput * lampsSeen(chains.path.ray, met.t);
   if (met.instance != kNowhere) return meet(chains, met, pixel);
   chains.path.throughput *= transmittanceOf(mediumOf(chains.path.interior, kNowhere), kFarAway);
   if (kSceneHasEnvironment && shows_lights)
     chains.radiance += chains.path.throughput * environmentFrom(chains.path.ray.dir);
   chains.path.ended = true;
+  chains.escaped = true;
   return kNoReceiver;
 }
 
+/// What kFollowMost is for.
+void noteEnd(Chains chains, Receiver receiver, uvec2 point) {
+  bool lit = receiver.found;
+  vec3 weight = lit ? receiver.weight : kSceneHasEnvironment && chains.escaped ? chains.path.throughput : vec3(0.0);
+  vec3 place = chains.path.ray.dir;
+  if (lit) place = surfaceMet(receiver.instance, receiver.triangle, receiver.u, receiver.v).position;
+  uint chain = hashChain(hashChain(chains.met, lit ? receiver.instance : kNowhere), lit ? receiver.triangle : 0u) | 1u;
+  if (chains.unsure) chain = 0u;
+  uint instance = lit ? receiver.instance : kNowhere;
+  imageStore(end_image, texelOfEnd(point, chains.way, 0u), uvec4(floatBitsToUint(place), chain));
+  imageStore(end_image, texelOfEnd(point, chains.way, 1u), floatBitsToUint(vec4(weight, chains.others)));
+  imageStore(end_image, texelOfEnd(point, chains.way, 2u),
+             uvec4(instance, receiver.triangle, packUnitVector(receiver.dir), floatBitsToUint(receiver.ior_from)));
+}
+
+void followOther(inout Chains chains, uvec2 pixel) {
+  chains.path = chains.other;
+  chains.other.ended = true;
+  chains.way = kTransmitted;
+  chains.met = chains.met_first;
+  chains.unsure = chains.unsure_first;
+  chains.escaped = false;
+  chains.others = 0.0;
+  chains.deviates = false;
+  if (kTask == kShowOthers) chains.to_pass = drawOther(pixel, push.frame, kTransmitted);
+}
+
 /// Radiance of both chains of a pixel, W/m²/sr.
-vec3 followChains(Ray ray, uvec2 pixel) {
-  Chains chains = startChains(ray, pixel);
+/// @param point  kFollowMost: of the grid
+vec3 followChains(Ray ray, uvec2 pixel, uint skipped, uvec2 point) {
+  Chains chains = startChains(ray, pixel, skipped);
   Receiver first = kNoReceiver, second = kNoReceiver;
   // Panes and holes are no events; the limit on steps keeps two facing panes from holding a path for ever.
-  for (uint step = 0u; step < 8u * max_events && !chains.path.ended; ++step) {
+  uint step = 0u;
+  do {
     Receiver receiver = followStep(chains, pixel, step == 0u);
-    if (receiver.found) {
+    ++step;
+    if (kTask != kFollowMost && receiver.found) {
       second = first;
       first = receiver;
     }
     if (chains.path.ended) {
-      chains.path = chains.other;
-      chains.other.ended = true;
+      if (kTask == kFollowMost) noteEnd(chains, receiver, point);
+      bool both_ended = chains.way == kReflected && chains.other.ended;
+      followOther(chains, pixel);
+      if (kTask == kFollowMost && both_ended) noteEnd(chains, kNoReceiver, point);
     }
-  }
-  while (first.found) {
-    chains.radiance += litRadiance(first);
-    first = second;
-    second.found = false;
+  } while (step < 8u * max_events && !chains.path.ended);
+  if (kTask != kFollowMost && first.found) {
+    do {
+      chains.radiance += litRadiance(first);
+      first = second;
+      second.found = false;
+    } while (first.found);
   }
   return chains.radiance;
 }
 
-void showPixel(uint listed) {
-  uvec2 pixel = uvec2(listed & 0xFFFFu, listed >> 16);
-  vec2 size = vec2(imageSize(specular_image));
-  Ray ray = rayThrough(views[0], (vec2(pixel) + push.film_offset) / size * 2.0 - 1.0);
-  ivec2 place = ivec2(pixel);
-  imageStore(specular_image, place, imageLoad(specular_image, place) + vec4(followChains(ray, pixel), 0.0));
+Ray rayOf(uvec2 pixel) {
+  return rayThrough(views[0], (vec2(pixel) + push.film_offset) / vec2(pictureSize()) * 2.0 - 1.0);
 }
 
-/// Groups in the order of their reversed bits: a device that gives each of its cores a range of groups so gives it pixels
-/// from all over the list, however short that is.
-uint spreadGroup() {
-  uint bits = uint(findMSB(gl_NumWorkGroups.x));
-  return bits == 0u ? 0u : bitfieldReverse(gl_WorkGroupID.x) >> (32u - bits);
+void followListed(uint packed_place) {
+  uvec2 place = unpackPlace(packed_place);
+  if (kTask == kFollowMost) {
+    uvec2 pixel = pixelOfPoint(place);
+    followChains(rayOf(pixel), pixel, 0u, place);
+  } else {
+    vec3 radiance = followChains(rayOf(place), place, packed_place & (kNoReflected | kNoTransmitted), place);
+    imageStore(specular_image, ivec2(place), imageLoad(specular_image, ivec2(place)) + vec4(radiance, 0.0));
+  }
 }
 
 void main() {
-  // Few threads that go through the list: a device that runs threads in step has them all at work.
-  uint threads = gl_NumWorkGroups.x * gl_WorkGroupSize.x;
-  uint thread = spreadGroup() * gl_WorkGroupSize.x + gl_LocalInvocationID.x;
-  for (uint i = thread; i < pixel_count; i += threads) showPixel(pixels[i]);
+  uint list = kTask == kShowAll ? kFollowedPixels : kTask == kFollowMost ? kPoints : kDeviatingPixels;
+  uint first = firstOf(list), count = heads[list].count, i = firstListed();
+  if (i >= count) return;
+  // Whether there is more is asked at the end, here and below: a device that runs all branches runs a loop's body once
+  // more to find that it is done.
+  do {
+    followListed(listed[first + i]);
+    i += listedThreads();
+  } while (i < count);
 }

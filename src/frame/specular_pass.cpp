@@ -1,12 +1,15 @@
 #include "frame/specular_pass.h"
 
-#include <algorithm>
-#include <bit>
+#include <array>
+#include <span>
 
 #include "core/spectrum.h"
 #include "frame/passes.h"
 #include "frame/table.h"
 #include "shaders/frame/specular.comp.h"
+#include "shaders/frame/specular_agreement.comp.h"
+#include "shaders/frame/specular_cells.comp.h"
+#include "shaders/frame/specular_lit.comp.h"
 #include "shaders/frame/specular_pixels.comp.h"
 
 namespace nephroid {
@@ -14,14 +17,9 @@ namespace {
 
 /// Wavelengths that a dispersive path may have: so many that their discs of colour run into one another.
 constexpr int kBandCount = 64;
-/// Groups of threads that go through the list of pixels: enough for every device, few enough to be all at work. A power
-/// of two, as frame/specular.comp.glsl wants their number.
-constexpr std::uint32_t kMaxGroups = 2048;
-
-/// Pushed by frame/specular_push.glsl.
-struct SpecularPush {
-  SamplePush sample;
-  std::uint32_t max_events, tree_nodes, tree_orders, band_count;
+/// ListHead of frame/specular_grid.glsl.
+struct ListHead {
+  std::uint32_t groups_x = 0, groups_y = 1, groups_z = 1, count = 0;
 };
 
 /// Wavelength and weight times the number of bands.
@@ -32,33 +30,80 @@ gpu::Image makeBandTable(gpu::Device& device, gpu::CommandRecorder& recorder) {
   return makeTexelTable(device, recorder, kFloat4, std::as_bytes(std::span(texels)), "bands");
 }
 
-std::vector<gpu::Constant> constantsOf(const SceneTraits& traits, const std::vector<gpu::Constant>& lights) {
-  std::vector<gpu::Constant> constants = traits.pathConstants();
-  constants.insert(constants.end(), lights.begin(), lights.end());
+// Constants of frame/specular.comp.glsl and frame/specular_grid.glsl.
+constexpr std::uint32_t kTaskConstant = 17, kSpacingConstant = 18;
+constexpr std::uint32_t kShowAll = 0, kFollowMost = 1, kShowOthers = 2;
+/// Of frame/specular_grid.glsl.
+constexpr std::uint32_t kListCount = 6, kPixelListCount = 2;
+constexpr std::uint32_t kFollowedPixels = 0, kDeviatingPixels = 1, kPoints = 2, kCells = 3, kLitCells = 4;
+constexpr std::array<ListHead, kListCount> kNoLists{};
+/// Texels of a point: frame/specular_ends.glsl.
+constexpr std::uint32_t kEndTexels = 3, kChainCount = 2;
+
+std::vector<gpu::Constant> join(std::vector<gpu::Constant> constants, const std::vector<gpu::Constant>& more) {
+  constants.insert(constants.end(), more.begin(), more.end());
   return constants;
 }
 
 }  // namespace
 
+/// Pushed by frame/specular_push.glsl.
+struct SpecularPass::Push {
+  SamplePush sample;
+  std::uint32_t max_events, tree_nodes, tree_orders, band_count;
+  uvec2 shift;
+  std::uint32_t chain;
+};
+
 SpecularPass::SpecularPass(gpu::Device& device, gpu::CommandRecorder& recorder, const SceneBuffers& buffers,
-                           const Inputs& inputs, const std::vector<gpu::Constant>& lights, std::uint32_t max_events)
+                           const Inputs& inputs, const std::vector<gpu::Constant>& lights, const Following& following)
     : buffers_(buffers),
       inputs_(inputs),
-      max_events_(max_events),
-      list_(device,
-            {.shader = shaders::specular_pixels_comp,
-             .bindings = SceneBuffers::bindings({kTexture, kTexture, kTable}),
-             .constants = buffers.traits().constants()},
-            "list of specular pixels"),
-      follow_(device,
-              {.shader = shaders::specular_comp,
-               .bindings = SceneBuffers::bindings({kTexture, kTexture, kTexture, kTable, kTable, kTexture, kTexture,
-                                                   kTexture, kTexture, kTable, kStorage, kTexture, kTexture}),
-               .push_bytes = sizeof(SpecularPush),
-               .constants = constantsOf(buffers.traits(), lights)},
-              "specular"),
-      bands_(makeBandTable(device, recorder)) {
+      following_(following),
+      bands_(makeBandTable(device, recorder)),
+      no_lists_(device, sizeof(kNoLists), 0, gpu::MemoryIntent::kDevice, "no lists") {
+  recorder.upload(no_lists_, std::as_bytes(std::span(kNoLists)));
+  const SceneTraits& traits = buffers.traits();
+  const gpu::Constant spacing{kSpacingConstant, following.spacing};
+  const auto make = [&](gpu::Spirv shader, std::initializer_list<VkDescriptorType> types,
+                        const std::vector<gpu::Constant>& constants, const char* name) {
+    return gpu::ComputePipeline(device,
+                                {.shader = shader,
+                                 .bindings = SceneBuffers::bindings(types),
+                                 .push_bytes = sizeof(Push),
+                                 .constants = join(constants, {spacing})},
+                                name);
+  };
+  const auto follow = [&](std::uint32_t task, const char* name) {
+    return make(shaders::specular_comp,
+                {kTexture, kTexture, kTexture, kTable, kTable, kStorage, kTexture, kTexture, kTexture, kStorage,
+                 kTexture, kTexture, kTexture, kTable},
+                join(join(traits.pathConstants(), lights), {{kTaskConstant, task}}), name);
+  };
+  pixels_ = make(shaders::specular_pixels_comp, {kTexture, kTable, kTexture}, traits.constants(), "specular pixels");
+  follow_all_ = follow(kShowAll, "specular");
+  if (following.spacing > 1) {
+    cells_ = make(shaders::specular_cells_comp, {kTexture, kTable, kStorage}, traits.constants(), "specular cells");
+    follow_most_ = follow(kFollowMost, "specular points");
+    agreement_ = make(shaders::specular_agreement_comp, {kTexture, kTable, kTexture}, traits.pathConstants(),
+                      "specular agreement");
+    lit_ = make(shaders::specular_lit_comp,
+                {kTexture, kTexture, kTexture, kTable, kTexture, kTable, kTexture, kTexture, kTexture, kStorage},
+                join(traits.constants(), lights), "specular lit");
+    follow_others_ = follow(kShowOthers, "specular others");
+  }
   fitPicture(device);
+}
+
+bool SpecularPass::hasCells() const {
+  // A picture of one row has no cells between its points.
+  return following_.spacing > 1 && inputs_.seen.desc().width > 1 && inputs_.seen.desc().height > 1;
+}
+
+uvec2 SpecularPass::pointCount() const {
+  // As in frame/specular_grid.glsl.
+  const uvec2 size(inputs_.seen.desc().width, inputs_.seen.desc().height);
+  return (size + 2U * following_.spacing - 2U) / following_.spacing + 1U;
 }
 
 void SpecularPass::fitPicture(gpu::Device& device) {
@@ -69,54 +114,143 @@ void SpecularPass::fitPicture(gpu::Device& device) {
                      .height = seen.height,
                      .usage = VK_IMAGE_USAGE_STORAGE_BIT | VK_IMAGE_USAGE_SAMPLED_BIT},
                     "specular");
-  const VkDeviceSize words = VkDeviceSize{seen.width} * seen.height + 1;
-  pixels_ = gpu::Buffer(device, words * sizeof(std::uint32_t), VK_BUFFER_USAGE_STORAGE_BUFFER_BIT,
-                        gpu::MemoryIntent::kDevice, "specular pixels");
+  const uvec2 points = pointCount();
+  // Something has to be bound.
+  const uvec2 kept = hasCells() ? points : uvec2(1);
+  ends_ = gpu::Image(device,
+                     {.format = VK_FORMAT_R32G32B32A32_UINT,
+                      .width = kept.x * kEndTexels * kChainCount,
+                      .height = kept.y,
+                      .usage = VK_IMAGE_USAGE_STORAGE_BIT | VK_IMAGE_USAGE_SAMPLED_BIT},
+                     "specular ends");
+  const VkDeviceSize words = VkDeviceSize{seen.width} * seen.height * kPixelListCount +
+                             VkDeviceSize{points.x} * points.y * (kListCount - kPixelListCount);
+  lists_ = gpu::Buffer(device, sizeof(kNoLists) + words * sizeof(std::uint32_t),
+                       VK_BUFFER_USAGE_STORAGE_BUFFER_BIT | VK_BUFFER_USAGE_INDIRECT_BUFFER_BIT,
+                       gpu::MemoryIntent::kDevice, "specular lists");
 }
 
-void SpecularPass::recordList(gpu::CommandRecorder& recorder) {
-  recorder.pass("clear list", {Use(pixels_, Access::kTransferWrite)},
-                [&](PassCommands& commands) { commands.fill(pixels_, 0, 0, sizeof(std::uint32_t)); });
+SpecularPass::Push SpecularPass::pushOf(const SamplePush& sample) const {
+  // From frame to frame the grid moves on, through all places in as many frames as there are.
+  const std::uint32_t side = following_.spacing, place = sample.frame % (side * side);
+  return {.sample = sample,
+          .max_events = following_.max_events,
+          .tree_nodes = inputs_.tree.nodeCount(),
+          .tree_orders = inputs_.tree.orderCount(),
+          .band_count = static_cast<std::uint32_t>(kBandCount),
+          .shift = uvec2(place % side, place / side),
+          .chain = 0};
+}
+
+void SpecularPass::recordPixels(gpu::CommandRecorder& recorder, const Push& push) {
   const std::vector<Use> uses = buffers_.uses(
       Access::kComputeRead, {Use(inputs_.seen, Access::kComputeRead), Use(inputs_.tint, Access::kComputeRead),
-                             Use(pixels_, Access::kComputeWrite)});
+                             Use(lists_, Access::kComputeWrite)});
   recorder.pass("specular pixels", uses, [&](PassCommands& commands) {
     const gpu::Sampler& nearest = buffers_.sampler();
-    commands.bind(list_);
+    commands.bind(pixels_);
     commands.bindResources(
-        buffers_.bound({Bound(7, inputs_.seen, nearest), Bound(8, inputs_.tint, nearest), Bound(9, pixels_)}));
+        buffers_.bound({Bound(7, inputs_.seen, nearest), Bound(8, lists_), Bound(9, inputs_.tint, nearest)}));
+    commands.pushConstants(push);
     commands.dispatch(gpu::groupsOf(sum_.desc().width, 8), gpu::groupsOf(sum_.desc().height, 8));
   });
 }
 
-void SpecularPass::record(gpu::CommandRecorder& recorder, const SamplePush& sample) {
-  recordList(recorder);
+void SpecularPass::recordCells(gpu::CommandRecorder& recorder, const Push& push) {
+  const std::vector<Use> uses = buffers_.uses(
+      Access::kComputeRead,
+      {Use(inputs_.seen, Access::kComputeRead), Use(lists_, Access::kComputeWrite), Use(ends_, Access::kComputeWrite)});
+  recorder.pass("specular cells", uses, [&](PassCommands& commands) {
+    commands.bind(cells_);
+    commands.bindResources(
+        buffers_.bound({Bound(7, inputs_.seen, buffers_.sampler()), Bound(8, lists_), Bound(9, ends_)}));
+    commands.pushConstants(push);
+    commands.dispatch(gpu::groupsOf(pointCount().x, 8), gpu::groupsOf(pointCount().y, 8));
+  });
+}
+
+void SpecularPass::recordAgreement(gpu::CommandRecorder& recorder, const Push& push) {
+  const std::vector<Use> uses = buffers_.uses(
+      Access::kComputeRead,
+      {Use(inputs_.seen, Access::kComputeRead), Use(lists_, Access::kDispatchWrite), Use(ends_, Access::kComputeRead)});
+  recorder.pass("specular agreement", uses, [&](PassCommands& commands) {
+    const gpu::Sampler& nearest = buffers_.sampler();
+    commands.bind(agreement_);
+    commands.bindResources(
+        buffers_.bound({Bound(7, inputs_.seen, nearest), Bound(8, lists_), Bound(9, ends_, nearest)}));
+    commands.pushConstants(push);
+    commands.dispatchIndirect(lists_, kCells * sizeof(ListHead));
+  });
+}
+
+void SpecularPass::recordLit(gpu::CommandRecorder& recorder, Push push) {
   const LightGrids& grids = inputs_.grids;
-  const SpecularPush push{sample, max_events_, inputs_.tree.nodeCount(), inputs_.tree.orderCount(),
-                          static_cast<std::uint32_t>(kBandCount)};
   std::vector<Use> uses = buffers_.uses(
-      Access::kComputeRead, {Use(inputs_.camera_view, Access::kComputeRead), Use(inputs_.seen, Access::kComputeRead),
-                             Use(bands_, Access::kComputeRead), Use(inputs_.lamps, Access::kComputeRead),
-                             Use(inputs_.environment, Access::kComputeRead), Use(pixels_, Access::kComputeRead),
-                             Use(sum_, Access::kComputeWrite), Use(inputs_.tree.nodes(), Access::kComputeRead),
-                             Use(inputs_.tree.triangles(), Access::kComputeRead)});
+      Access::kComputeRead, {Use(inputs_.seen, Access::kComputeRead), Use(lists_, Access::kDispatchRead),
+                             Use(ends_, Access::kComputeRead), Use(inputs_.lamps, Access::kComputeRead),
+                             Use(inputs_.environment, Access::kComputeRead), Use(sum_, Access::kComputeWrite)});
   const std::vector<Use> of_lights = grids.uses();
   uses.insert(uses.end(), of_lights.begin(), of_lights.end());
-  recorder.pass("specular", uses, [&](PassCommands& commands) {
+  const gpu::Sampler& nearest = buffers_.sampler();
+  std::vector<Bound> bound =
+      buffers_.bound({Bound(11, inputs_.seen, nearest), Bound(12, lists_), Bound(13, ends_, nearest),
+                      Bound(14, inputs_.lamps, nearest), Bound(15, inputs_.environment, inputs_.environment_sampler),
+                      Bound(16, sum_)});
+  const std::vector<Bound> of_grids = grids.bound(SceneBuffers::kBindings);
+  bound.insert(bound.end(), of_grids.begin(), of_grids.end());
+  // One after the other: both add to the same pixels.
+  const std::uint32_t chains = buffers_.traits().specular.transmits ? kChainCount : 1;
+  for (push.chain = 0; push.chain < chains; ++push.chain)
+    recorder.pass("specular lit", uses, [&](PassCommands& commands) {
+      commands.bind(lit_);
+      commands.bindResources(bound);
+      commands.pushConstants(push);
+      commands.dispatchIndirect(lists_, (kLitCells + push.chain) * sizeof(ListHead));
+    });
+}
+
+void SpecularPass::recordFollowing(gpu::CommandRecorder& recorder, const gpu::ComputePipeline& pipeline,
+                                   const char* name, std::uint32_t list, const Push& push) {
+  const LightGrids& grids = inputs_.grids;
+  std::vector<Use> uses = buffers_.uses(
+      Access::kComputeRead,
+      {Use(inputs_.camera_view, Access::kComputeRead), Use(inputs_.seen, Access::kComputeRead),
+       Use(bands_, Access::kComputeRead), Use(inputs_.lamps, Access::kComputeRead),
+       Use(inputs_.environment, Access::kComputeRead), Use(lists_, Access::kDispatchRead),
+       Use(ends_, Access::kComputeWrite), Use(sum_, Access::kComputeWrite),
+       Use(inputs_.tree.nodes(), Access::kComputeRead), Use(inputs_.tree.triangles(), Access::kComputeRead)});
+  const std::vector<Use> of_lights = grids.uses();
+  uses.insert(uses.end(), of_lights.begin(), of_lights.end());
+  recorder.pass(name, uses, [&](PassCommands& commands) {
     const gpu::Sampler& nearest = buffers_.sampler();
-    commands.bind(follow_);
-    std::vector<Bound> bound =
-        buffers_.bound({Bound(11, inputs_.camera_view), Bound(12, inputs_.seen, nearest), Bound(13, bands_, nearest),
-                        Bound(14, inputs_.lamps, nearest), Bound(15, inputs_.environment, inputs_.environment_sampler),
-                        Bound(16, pixels_), Bound(17, sum_), Bound(18, inputs_.tree.nodes(), nearest),
-                        Bound(19, inputs_.tree.triangles(), nearest)});
+    commands.bind(pipeline);
+    std::vector<Bound> bound = buffers_.bound(
+        {Bound(11, inputs_.camera_view), Bound(12, ends_), Bound(13, bands_, nearest),
+         Bound(14, inputs_.lamps, nearest), Bound(15, inputs_.environment, inputs_.environment_sampler),
+         Bound(16, sum_), Bound(17, inputs_.tree.nodes(), nearest), Bound(18, inputs_.tree.triangles(), nearest),
+         Bound(19, inputs_.seen, nearest), Bound(20, lists_)});
     const std::vector<Bound> of_grids = grids.bound(SceneBuffers::kBindings);
     bound.insert(bound.end(), of_grids.begin(), of_grids.end());
     commands.bindResources(bound);
     commands.pushConstants(push);
-    const std::uint32_t pixels = sum_.desc().width * sum_.desc().height;
-    commands.dispatch(std::min(std::bit_ceil(gpu::groupsOf(pixels, 64)), kMaxGroups));
+    commands.dispatchIndirect(lists_, list * sizeof(ListHead));
   });
+}
+
+void SpecularPass::record(gpu::CommandRecorder& recorder, const SamplePush& sample) {
+  const Push push = pushOf(sample);
+  recorder.pass("clear lists", {Use(no_lists_, Access::kTransferRead), Use(lists_, Access::kTransferWrite)},
+                [&](PassCommands& commands) { commands.copy(no_lists_, lists_, sizeof(kNoLists)); });
+  if (hasCells()) {
+    recordCells(recorder, push);
+    recordFollowing(recorder, follow_most_, "specular points", kPoints, push);
+    recordAgreement(recorder, push);
+    recordLit(recorder, push);
+    recordFollowing(recorder, follow_others_, "specular others", kDeviatingPixels, push);
+  } else {
+    recordPixels(recorder, push);
+  }
+  recordFollowing(recorder, follow_all_, "specular", kFollowedPixels, push);
 }
 
 }  // namespace nephroid

@@ -1,12 +1,15 @@
 // The layer `specular` of a frame: what mirrors, glass and water show, followed surface by surface.
 //
-// Two passes over pixels: one lists those that show an interface of class S, the other follows chains of surfaces from
-// each of them through the tree of triangles.
+// Chains of surfaces are followed through the tree of triangles, not from every pixel: the picture is divided into
+// cells of a few pixels. Of a cell that shows one specular thing all over they are followed at its corners, along the
+// ways that carry most; if those end alike (specular_agreement.comp.glsl) all pixels of the cell show what lies between
+// (specular_lit.comp.glsl), and some, drawn for it, what the other ways carry. All other pixels follow their own.
 #pragma once
 
 #include <cstdint>
 #include <vector>
 
+#include "core/math.h"
 #include "frame/light_grids.h"
 #include "frame/sample_push.shared.h"
 #include "frame/scene_buffers.h"
@@ -26,11 +29,16 @@ class SpecularPass {
     const LightGrids& grids;
     const TriangleTree& tree;
   };
+  /// How chains are followed.
+  struct Following {
+    std::uint32_t max_events = 0;
+    std::uint32_t spacing = 1;  ///< pixels along a side of a cell, 1 to 4; 1: all pixels follow their own
+  };
 
   /// Records the upload of tables. @param lights  constants of frame/sky.glsl and frame/lights.glsl: what shines
   /// @throws ResourceError
   SpecularPass(gpu::Device& device, gpu::CommandRecorder& recorder, const SceneBuffers& buffers, const Inputs& inputs,
-               const std::vector<gpu::Constant>& lights, std::uint32_t max_events);
+               const std::vector<gpu::Constant>& lights, const Following& following);
 
   /// The frame's images have another size now. @throws ResourceError
   void fitPicture(gpu::Device& device);
@@ -40,14 +48,25 @@ class SpecularPass {
   const gpu::Image& sum() const { return sum_; }
 
  private:
-  void recordList(gpu::CommandRecorder& recorder);
+  struct Push;
+  Push pushOf(const SamplePush& sample) const;
+  /// Whether the picture is divided into cells.
+  bool hasCells() const;
+  void recordPixels(gpu::CommandRecorder& recorder, const Push& push);
+  void recordCells(gpu::CommandRecorder& recorder, const Push& push);
+  void recordAgreement(gpu::CommandRecorder& recorder, const Push& push);
+  void recordLit(gpu::CommandRecorder& recorder, Push push);
+  void recordFollowing(gpu::CommandRecorder& recorder, const gpu::ComputePipeline& pipeline, const char* name,
+                       std::uint32_t list, const Push& push);
+  uvec2 pointCount() const;
 
   const SceneBuffers& buffers_;
   Inputs inputs_;
-  std::uint32_t max_events_;
-  gpu::ComputePipeline list_, follow_;
-  gpu::Image bands_, sum_;
-  gpu::Buffer pixels_;
+  Following following_;
+  gpu::ComputePipeline pixels_, follow_all_;
+  gpu::ComputePipeline cells_, follow_most_, agreement_, lit_, follow_others_;  ///< where there are cells
+  gpu::Image bands_, sum_, ends_;
+  gpu::Buffer no_lists_, lists_;  ///< the heads of empty lists; heads and lists
 };
 
 }  // namespace nephroid

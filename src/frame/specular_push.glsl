@@ -7,4 +7,6 @@ layout(push_constant, scalar) uniform Push {
   uint tree_nodes;  // of the tree of triangles, in one order
   uint tree_orders;
   uint band_count;
+  uvec2 shift;  // of the grid of cells against the picture, in pixels
+  uint chain;   // that a pass over cells is about: kReflected, kTransmitted
 };

@@ -32,32 +32,36 @@ Met meetFirst(Ray ray, uint own_instance, uint own_triangle) {
   uvec3 below = uvec3(lessThan(dir, vec3(0.0)));
   uint first = tree_orders == 8u ? (below.x + 2u * below.y + 4u * below.z) * tree_nodes : 0u;
   uint node = 0u, triangle = 0u, triangles_left = 0u;
-  while (node < tree_nodes) {
+  if (tree_nodes == 0u) return best;
+  // All loops ask at the end whether there is more: a device that runs all branches runs a loop's body once more to find
+  // that it is done.
+  do {
     // To the next leaf. Threads that go in step wait for each other here: a turn for either a box or a triangle would
     // cost both.
-    while (node < tree_nodes && triangles_left == 0u) {
+    do {
       uvec4 lower = texelFetch(tree_node_table, texelOf(2u * (first + node)), 0);
       uvec4 upper = texelFetch(tree_node_table, texelOf(2u * (first + node) + 1u), 0);
       bool met = meetsBox(uintBitsToFloat(lower.xyz), uintBitsToFloat(upper.xyz), ray.origin, inverse_dir, best.t);
       bool is_leaf = upper.w != kNowhere;
       node = met ? node + 1u : lower.w;
-      triangle = upper.w >> 2;
+      triangle = is_leaf ? upper.w >> 2 : 0u;
       triangles_left = met && is_leaf ? upper.w & 3u : 0u;
-    }
-    while (triangles_left > 0u) {
+    } while (node < tree_nodes && triangles_left == 0u);
+    bool is_triangle = triangles_left > 0u;
+    do {
       uvec4 a = texelFetch(tree_triangle_table, texelOf(3u * triangle), 0);
       uvec4 b = texelFetch(tree_triangle_table, texelOf(3u * triangle + 1u), 0);
       uvec4 c = texelFetch(tree_triangle_table, texelOf(3u * triangle + 2u), 0);
       ++triangle;
-      --triangles_left;
       RayTriangle hit = intersectPlaneOf(
           Triangle(uintBitsToFloat(a.xyz), uintBitsToFloat(b.xyz), uintBitsToFloat(c.xyz)), ray.origin, ray.dir);
       bool inside = hit.size > 0.0 && min(min(hit.u, hit.v), hit.size - hit.u - hit.v) >= -kEdgeSlack * hit.size;
       bool own = a.w == own_instance && b.w == own_triangle;
-      if (!own && inside && hit.t > 0.0 && hit.t < best.t * hit.size)
+      if (is_triangle && !own && inside && hit.t > 0.0 && hit.t < best.t * hit.size)
         best = Met(hit.t / hit.size, hit.u / hit.size, hit.v / hit.size, a.w, b.w);
-    }
-  }
+      triangles_left = is_triangle ? triangles_left - 1u : 0u;
+    } while (triangles_left > 0u);
+  } while (node < tree_nodes);
   return best;
 }
 

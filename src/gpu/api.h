@@ -56,6 +56,7 @@ namespace nephroid::gpu {
   X(CmdCopyBufferToImage)               \
   X(CmdCopyImageToBuffer)               \
   X(CmdDispatch)                        \
+  X(CmdDispatchIndirect)                        \
   X(CmdDraw)                            \
   X(CmdDrawIndexed)                     \
   X(CmdEndRendering)                    \

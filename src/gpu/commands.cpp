@@ -36,6 +36,14 @@ AccessInfo describe(Access access) {
     case Access::kComputeRead:
       return {VK_PIPELINE_STAGE_2_COMPUTE_SHADER_BIT, VK_ACCESS_2_SHADER_READ_BIT,
               VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL, false};
+    case Access::kDispatchRead:
+      return {VK_PIPELINE_STAGE_2_COMPUTE_SHADER_BIT | VK_PIPELINE_STAGE_2_DRAW_INDIRECT_BIT,
+              VK_ACCESS_2_SHADER_READ_BIT | VK_ACCESS_2_INDIRECT_COMMAND_READ_BIT,
+              VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL, false};
+    case Access::kDispatchWrite:
+      return {VK_PIPELINE_STAGE_2_COMPUTE_SHADER_BIT | VK_PIPELINE_STAGE_2_DRAW_INDIRECT_BIT,
+              VK_ACCESS_2_SHADER_READ_BIT | VK_ACCESS_2_SHADER_WRITE_BIT | VK_ACCESS_2_INDIRECT_COMMAND_READ_BIT,
+              VK_IMAGE_LAYOUT_GENERAL, true};
     case Access::kComputeWrite:
       return {VK_PIPELINE_STAGE_2_COMPUTE_SHADER_BIT, VK_ACCESS_2_SHADER_READ_BIT | VK_ACCESS_2_SHADER_WRITE_BIT,
               VK_IMAGE_LAYOUT_GENERAL, true};
@@ -136,6 +144,10 @@ void PassCommands::pushBytes(const void* data, std::size_t size) {
 
 void PassCommands::dispatch(std::uint32_t groups_x, std::uint32_t groups_y, std::uint32_t groups_z) {
   device_.api().CmdDispatch(commands_, groups_x, groups_y, groups_z);
+}
+
+void PassCommands::dispatchIndirect(const Buffer& groups, VkDeviceSize offset) {
+  device_.api().CmdDispatchIndirect(commands_, groups.handle(), offset);
 }
 
 void PassCommands::beginRendering(const RenderTargets& targets) {

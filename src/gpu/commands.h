@@ -20,6 +20,8 @@ enum class Access : std::uint8_t {
   kTransferRead,
   kTransferWrite,
   kComputeRead,    ///< buffers, sampled images
+  kDispatchRead,   ///< buffers, also for the number of groups
+  kDispatchWrite,  ///< likewise, and writing
   kComputeWrite,   ///< buffers, storage images; what was there may be kept
   kGraphicsRead,   ///< buffers and sampled images in vertex and fragment shaders
   kGraphicsWrite,  ///< buffers and storage images in fragment shaders
@@ -83,6 +85,8 @@ class PassCommands {
   }
   /// At least as many threads as said, in groups of the shader's size.
   void dispatch(std::uint32_t groups_x, std::uint32_t groups_y = 1, std::uint32_t groups_z = 1);
+  /// As many groups as three words of the buffer say when it comes to that.
+  void dispatchIndirect(const Buffer& groups, VkDeviceSize offset);
 
   /// Begins drawing into the targets: viewport and scissor cover them.
   void beginRendering(const RenderTargets& targets);

@@ -44,6 +44,40 @@ TEST_F(Commands, PassesSeeWhatEarlierPassesWrote) {
   for (std::size_t i = 0; i < words.size(); ++i) ASSERT_EQ(result[i], 12 * words[i]) << i;
 }
 
+TEST_F(Commands, PassesHaveAsManyGroupsAsEarlierPassesWrote) {
+  // The first words are the number of groups, which a pass doubles before the next one asks for it.
+  std::vector<std::uint32_t> words(1000, 1);
+  CommandRecorder recorder(device());
+  recorder.begin();
+  const Buffer buffer = makeBuffer<std::uint32_t>(
+      device(), recorder, words, VK_BUFFER_USAGE_STORAGE_BUFFER_BIT | VK_BUFFER_USAGE_INDIRECT_BUFFER_BIT, "words");
+  const ComputePipeline twice = makeScaler(2), thrice = makeScaler(3);
+  const auto bind = [&](PassCommands& commands, const ComputePipeline& pipeline, std::size_t count) {
+    commands.bind(pipeline);
+    commands.bindResources({Bound(0, buffer)});
+    commands.pushConstants(static_cast<std::uint32_t>(count));
+  };
+  recorder.pass("one word", {Use(buffer, Access::kComputeWrite)}, [&](PassCommands& commands) {
+    bind(commands, twice, 1);
+    commands.dispatch(1);
+  });
+  // The fourth to sixth word: a single group.
+  recorder.pass("a group", {Use(buffer, Access::kDispatchWrite)}, [&](PassCommands& commands) {
+    bind(commands, thrice, words.size());
+    commands.dispatchIndirect(buffer, 3 * sizeof(std::uint32_t));
+  });
+  // Six in x, three in y and z by now: only those in x tell words apart.
+  recorder.pass("all groups", {Use(buffer, Access::kDispatchRead)}, [&](PassCommands& commands) {
+    bind(commands, twice, 0);
+    commands.dispatchIndirect(buffer, 0);
+  });
+  recorder.submit();
+  recorder.wait();
+  const std::vector<std::uint32_t> result = readBackAs<std::uint32_t>(device(), buffer);
+  EXPECT_EQ(result[0], 6U);
+  for (std::size_t i = 1; i < words.size(); ++i) ASSERT_EQ(result[i], i < 64 ? 3U : 1U) << i;
+}
+
 TEST_F(Commands, TimesEveryPassByName) {
   CommandRecorder recorder(device());
   recorder.begin();

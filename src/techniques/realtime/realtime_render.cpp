@@ -216,6 +216,13 @@ std::vector<ParamSpec> makeFrameParams() {
        "",
        "reflections and refractions in a row that are followed in what mirrors and glass show",
        {}},
+      {"specular-spacing",
+       static_cast<int>(FrameSettings{}.specular_spacing),
+       1,
+       4,
+       "pixels",
+       "between those from which smooth mirrors and glass are followed; those between show what lies between; 1: all",
+       {}},
   };
 }
 
@@ -223,7 +230,8 @@ FrameSettings makeFrameSettings(const ParamSet& params) {
   return {.shadow_size = static_cast<std::uint32_t>(params.getInt("shadow-size")),
           .specular_alpha = params.getFloat("specular-alpha"),
           .box_tree_builder = buildBoxTree,
-          .max_events = static_cast<std::uint32_t>(params.getInt("max-events"))};
+          .max_events = static_cast<std::uint32_t>(params.getInt("max-events")),
+          .specular_spacing = static_cast<std::uint32_t>(params.getInt("specular-spacing"))};
 }
 
 MakeRealtimeTechnique factoryOf(const Technique& technique, const ParamSet& params) {

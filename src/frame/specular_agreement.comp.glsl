@@ -1,0 +1,192 @@
+// Which cells' corners agree on what a chain ends on, so that the pixels between them show what lies between there.
+//
+// They agree if they met the same surfaces in the same order and end on the same triangle, and if the ends lie so evenly,
+// judged by the points beside, that a pixel is shown what is at most kMostDisplaced away from what it sees. Pixels of
+// other cells are followed themselves.
+#version 460
+#extension GL_GOOGLE_include_directive : require
+#extension GL_EXT_scalar_block_layout : require
+#include "frame/specular_push.glsl"
+#define NEPHROID_GRID_BINDINGS 7
+#include "frame/specular_grid.glsl"
+#define NEPHROID_ENDS_BINDING 9
+#include "frame/specular_ends.glsl"
+#include "frame/specular_others.glsl"
+
+layout(local_size_x = 64) in;
+layout(constant_id = 9) const bool kSceneTransmits = true;
+
+/// Pixels.
+const float kMostDisplaced = 0.5;
+/// By how much bilinear interpolation may miss an end's weight: a share of it, or of all light that a pixel shows.
+const float kMostWeightError = 0.02;
+const float kMostLightError = 0.003;
+/// What is passed by between the corners may carry more than the mean of what is at the corners.
+const float kOthersMargin = 1.1;
+
+/// A value at a point of the grid, and whether it tells anything of the cell.
+struct Sample {
+  bool valid;
+  vec4 value;  // place, luminance of the weight
+  float at;    // pixel along the line
+};
+
+float luminanceOf(vec3 rgb) { return dot(rgb, vec3(0.2126, 0.7152, 0.0722)); }
+
+/// What interpolation between corners may be wrong by.
+struct Miss {
+  bool known;
+  float pixels;  // that it is displaced
+  float weight;
+};
+
+/// Steps from pixel to pixel.
+struct Steps {
+  vec3 per_x;
+  vec3 per_y;
+};
+
+/// How many pixels away from its own place a pixel shows what lies `miss` beside, by the steps between pixels.
+float pixelsOf(vec3 miss, Steps steps) {
+  float longest = max(dot(steps.per_x, steps.per_x), dot(steps.per_y, steps.per_y));
+  float scale = longest > 0.0 ? inversesqrt(longest) : 0.0;
+  vec3 m = scale * miss, x = scale * steps.per_x, y = scale * steps.per_y, normal = cross(x, y);
+  float squared = dot(normal, normal);
+  if (squared == 0.0) return miss == vec3(0.0) ? 0.0 : 1e9;
+  return length(vec2(dot(cross(m, y), normal), dot(cross(x, m), normal))) / squared;
+}
+
+/// What linear interpolation between the middle two of four samples on a line may miss, by the second derivative.
+Miss estimateMiss(Sample before, Sample first, Sample second, Sample after, Steps steps) {
+  float h = second.at - first.at;
+  vec4 slope = (second.value - first.value) / h;
+  Miss miss = Miss(before.valid || after.valid, 0.0, 0.0);
+  for (uint i = 0u; i < 2u; ++i) {
+    bool valid = before.valid;
+    float step = first.at - before.at;
+    vec4 change = slope - (first.value - before.value) / max(step, 1.0);
+    if (i == 1u) {
+      valid = after.valid;
+      step = after.at - second.at;
+      change = slope - (after.value - second.value) / max(step, 1.0);
+    }
+    vec4 missed = change * (h * h / (4.0 * (h + step)));
+    if (!valid) continue;
+    miss.pixels = max(miss.pixels, pixelsOf(missed.xyz, steps));
+    miss.weight = max(miss.weight, abs(missed.w));
+  }
+  return miss;
+}
+
+/// @param chain_hash  of the cell's first corner
+Sample sampleAt(ivec2 point, uint chain, uint chain_hash, bool across) {
+  bool inside = all(greaterThanEqual(point, ivec2(0))) && all(lessThan(point, ivec2(pointCount())));
+  uvec2 p = uvec2(max(point, ivec2(0)));
+  uvec4 place = fetchEndPlace(p, chain);
+  uvec2 pixel = pixelOfPoint(p);
+  return Sample(inside && place.w == chain_hash,
+                vec4(uintBitsToFloat(place.xyz), luminanceOf(fetchEndWeight(p, chain).xyz)),
+                float(across ? pixel.x : pixel.y));
+}
+
+/// Along the two edges of a cell that go in one direction.
+Miss estimateMissAlong(ivec2 cell, ivec2 along, uint chain, uint chain_hash, Steps steps) {
+  Miss most = Miss(true, 0.0, 0.0);
+  bool across = along.x != 0;
+  for (int side = 0; side < 2; ++side) {
+    ivec2 first = cell + side * (ivec2(1) - along);
+    Sample before = sampleAt(first - along, chain, chain_hash, across), a = sampleAt(first, chain, chain_hash, across),
+           b = sampleAt(first + along, chain, chain_hash, across), after = sampleAt(first + 2 * along, chain, chain_hash, across);
+    // Points that the picture's edge pushed onto one pixel tell nothing.
+    before.valid = before.valid && before.at < a.at;
+    after.valid = after.valid && after.at > b.at;
+    Miss miss = estimateMiss(before, a, b, after, steps);
+    most = Miss(most.known && miss.known, max(most.pixels, miss.pixels), max(most.weight, miss.weight));
+  }
+  return most;
+}
+
+/// What is known of a cell's chain.
+struct Agreement {
+  bool agrees;
+  bool lit;         // it shows something
+  Bilinear weight;  // and what others carry
+};
+
+Agreement agreementOf(uvec2 cell, Cell pixels, uint chain) {
+  uvec4 place = fetchEndPlace(cell, chain), right = fetchEndPlace(cell + uvec2(1u, 0u), chain),
+        below = fetchEndPlace(cell + uvec2(0u, 1u), chain), opposite = fetchEndPlace(cell + 1u, chain);
+  vec4 weight = fetchEndWeight(cell, chain), weight_right = fetchEndWeight(cell + uvec2(1u, 0u), chain),
+       weight_below = fetchEndWeight(cell + uvec2(0u, 1u), chain), weight_opposite = fetchEndWeight(cell + 1u, chain);
+  Agreement a;
+  a.weight = bilinearOf(weight, weight_right, weight_below, weight_opposite);
+  a.agrees = place.w != 0u && all(equal(uvec3(right.w, below.w, opposite.w), uvec3(place.w)));
+  a.lit = weight.xyz != vec3(0.0) || weight_right.xyz != vec3(0.0) || weight_below.xyz != vec3(0.0) ||
+          weight_opposite.xyz != vec3(0.0);
+  if (!a.agrees || !a.lit) return a;
+  vec2 size = vec2(pixels.last - pixels.first);
+  vec3 corner = uintBitsToFloat(place.xyz);
+  Steps steps = Steps((uintBitsToFloat(right.xyz) - corner) / size.x, (uintBitsToFloat(below.xyz) - corner) / size.y);
+  Miss across = estimateMissAlong(ivec2(cell), ivec2(1, 0), chain, place.w, steps);
+  Miss down = estimateMissAlong(ivec2(cell), ivec2(0, 1), chain, place.w, steps);
+  float least = min(min(luminanceOf(weight.xyz), luminanceOf(weight_right.xyz)),
+                    min(luminanceOf(weight_below.xyz), luminanceOf(weight_opposite.xyz)));
+  a.agrees = across.known && down.known && across.pixels + down.pixels <= kMostDisplaced &&
+             across.weight + down.weight <= max(kMostWeightError * least, kMostLightError);
+  return a;
+}
+
+void listPixels(Cell pixels, uint list, uint flags) {
+  uvec2 size = pixels.end - pixels.first;
+  uint next = extend(list, size.x * size.y);
+  uvec2 pixel = pixels.first;
+  do {
+    listed[next++] = packPlace(pixel) | flags;
+  } while (nextPixel(pixels, pixel));
+}
+
+/// Is a pixel drawn to show what a chain passed by?
+bool deviates(Agreement a, uvec2 pixel, vec2 at, uint chain) {
+  return a.agrees && drawOther(pixel, push.frame, chain) < kOthersMargin * valueAt(a.weight, at).w;
+}
+
+void listDeviating(Cell pixels, Agreement reflected, Agreement transmitted) {
+  vec2 inverse_size = 1.0 / vec2(pixels.last - pixels.first);
+  uvec2 pixel = pixels.first, next = pixel;
+  bool more;
+  do {
+    vec2 at = vec2(pixel - pixels.first) * inverse_size;
+    bool by_reflected = deviates(reflected, pixel, at, kReflected);
+    bool by_transmitted = kSceneTransmits && deviates(transmitted, pixel, at, kTransmitted);
+    more = nextPixel(pixels, next);
+    if (by_reflected || by_transmitted)
+      listed[extend(kDeviatingPixels, 1u)] =
+          packPlace(pixel) | (by_reflected ? 0u : kNoReflected) | (by_transmitted ? 0u : kNoTransmitted);
+    pixel = next;
+  } while (more);
+}
+
+void sortCell(uint packed_place) {
+  uvec2 cell = unpackPlace(packed_place);
+  Cell pixels = cellAt(cell);
+  Agreement reflected = agreementOf(cell, pixels, kReflected), transmitted;
+  transmitted.agrees = true;
+  transmitted.lit = false;
+  transmitted.weight = Bilinear(vec4(0.0), vec4(0.0), vec4(0.0), vec4(0.0));
+  if (kSceneTransmits) transmitted = agreementOf(cell, pixels, kTransmitted);
+  if (reflected.agrees && reflected.lit) listed[extend(kLitCells + kReflected, 1u)] = packed_place;
+  if (transmitted.agrees && transmitted.lit) listed[extend(kLitCells + kTransmitted, 1u)] = packed_place;
+  if (!reflected.agrees || !transmitted.agrees)
+    listPixels(pixels, kFollowedPixels,
+               (reflected.agrees ? kNoReflected : 0u) | (transmitted.agrees ? kNoTransmitted : 0u));
+  listDeviating(pixels, reflected, transmitted);
+}
+
+void main() {
+  uint first = firstOf(kCells), count = heads[kCells].count, i = firstListed();
+  if (i >= count) return;
+  do {
+    sortCell(listed[first + i]);
+    i += listedThreads();
+  } while (i < count);
+}

@@ -1,0 +1,65 @@
+// Sorts the cells of the grid by what they show: of a cell that shows one specular thing all over the chains are followed
+// at its corners, of one that shows some of it at its pixels.
+//
+// The order of lists differs between runs, what becomes of a pixel does not.
+#version 460
+#extension GL_GOOGLE_include_directive : require
+#extension GL_EXT_scalar_block_layout : require
+#include "frame/specular_push.glsl"
+#define NEPHROID_GRID_BINDINGS 7
+#include "frame/specular_grid.glsl"
+#include "frame/specular_ends.glsl"
+
+layout(local_size_x = 8, local_size_y = 8) in;
+layout(set = 0, binding = 9, rgba32ui) writeonly uniform uimage2D end_image;
+
+/// Do all pixels of a cell and its corners show one instance?
+bool showsOne(Cell cell, uint first) {
+  bool one = true;
+  for (uint y = 0u; y <= kSpacing; ++y)
+    for (uint x = 0u; x <= kSpacing; ++x)
+      one = one && texelFetch(seen_image, ivec2(min(cell.first + uvec2(x, y), cell.last)), 0).x == first;
+  return one;
+}
+
+/// Which of a cell's pixels have a lobe of class S, a bit each in the order of nextPixel.
+uint findSpecular(Cell cell) {
+  uvec2 pixel = cell.first;
+  uint found = 0u, bit = 1u;
+  do {
+    uint seen = texelFetch(seen_image, ivec2(pixel), 0).x;
+    if (seen != 0u && isSpecular(max(seen, 1u) - 1u)) found |= bit;
+    bit <<= 1;
+  } while (nextPixel(cell, pixel));
+  return found;
+}
+
+/// One behind the other: threads that go in step find the same things there.
+void listPixels(Cell cell, uint wanted) {
+  uint next = extend(kFollowedPixels, uint(bitCount(wanted)));
+  uvec2 pixel = cell.first;
+  do {
+    if ((wanted & 1u) != 0u) listed[next++] = packPlace(pixel);
+    wanted >>= 1;
+    nextPixel(cell, pixel);
+  } while (wanted != 0u);
+}
+
+void main() {
+  uvec2 point = gl_GlobalInvocationID.xy, points = pointCount();
+  if (any(greaterThanEqual(point, points))) return;
+  imageStore(end_image, texelOfEnd(point, kReflected, 0u), uvec4(0u));
+  imageStore(end_image, texelOfEnd(point, kTransmitted, 0u), uvec4(0u));
+  Cell cell = cellAt(point);
+  // A point's own pixel is the first of its cell, also of one without pixels.
+  uint first = texelFetch(seen_image, ivec2(cell.first), 0).x;
+  bool is_specular = first != 0u && isSpecular(max(first, 1u) - 1u);
+  if (is_specular) listed[extend(kPoints, 1u)] = packPlace(point);
+  // Beyond the picture's edges nothing is left.
+  if (any(greaterThanEqual(point + 1u, points)) || any(greaterThanEqual(cell.first, cell.last))) return;
+  bool is_one = showsOne(cell, first);
+  if (is_one && is_specular) listed[extend(kCells, 1u)] = packPlace(point);
+  if (is_one) return;
+  uint found = findSpecular(cell);
+  if (found != 0u) listPixels(cell, found);
+}
