@@ -221,7 +221,9 @@ Met meetNext(inout Flight flight, Pictures generators, Pictures receivers) {
   bool is_enclosed = flight.closed > 0 && met.instance == kNowhere;
   if (receiver.t < met.t) met = receiver;
   if (is_enclosed || met.instance == kNowhere) {
-    flight.outcome = is_enclosed || hidden || hidden_receiver ? kOutcomeHidden : kOutcomeEscaped;
+    // Nor does light go on for ever in water that a basin bounds: the pictures do not have the place.
+    bool is_inside = flight.path.interior.solids.x != 0u;
+    flight.outcome = is_enclosed || is_inside || hidden || hidden_receiver ? kOutcomeHidden : kOutcomeEscaped;
     flight.path.ended = true;
     if (flight.outcome == kOutcomeEscaped) depart(flight);
     if (flight.outcome == kOutcomeEscaped && flight.path.events == 0u) flight.outcome = kOutcomeMissed;
