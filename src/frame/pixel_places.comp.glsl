@@ -14,6 +14,8 @@ void main() {
   if (at.x >= size.x || at.y >= size.y) return;
   PixelSurface pixel;
   vec4 value = vec4(uintBitsToFloat(0x7F800000u));  // infinitely far away
-  if (surfaceOfPixel(at, size, pixel)) value = vec4(pixel.position, uintBitsToFloat(packUnitVector(pixel.geometric)));
+  // Water lets what reaches its bed pass, even where that is near.
+  bool receives = surfaceOfPixel(at, size, pixel) && (fetchInstance(pixel.instance).flags & kInstanceReceives) != 0u;
+  if (receives) value = vec4(pixel.position, uintBitsToFloat(packUnitVector(pixel.geometric)));
   imageStore(surface_image, ivec3(at, 0), value);
 }

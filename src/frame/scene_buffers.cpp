@@ -309,6 +309,7 @@ void SceneBuffers::updateInstances(gpu::Device& device, gpu::CommandRecorder& re
     const bool generates = instance.casts && classes_[mesh.material].is_generator;
     if (generates) record.flags |= kInstanceGenerates;
     if (place.is_closed) record.flags |= kInstanceClosed;
+    if (classes_[mesh.material].is_receiver) record.flags |= kInstanceReceives;
     instances.push_back(record);
     if (mesh.triangles.empty()) continue;
     Bounds bounds;

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <deque>
 #include <optional>
 
 #include "core/sampling/sampler.h"
@@ -19,6 +20,8 @@ struct CausticMap::Pictures {
   gpu::Buffer light;  ///< a LightRecord
   std::unique_ptr<SurfaceLayers> first, generators, receivers;
   FluxMap map;
+  bool map_is_kept = false;          ///< what is in the map is what would be put there
+  std::deque<PhotonBuffer> photons;  ///< that are kept, one for each run of transport
 };
 
 struct CausticMap::Source {
@@ -76,16 +79,22 @@ CausticMap::CausticMap(const RealtimeInputs& inputs, const CausticMapSettings& s
       settings_(settings),
       directions_(inputs.buffers.traits().gloss || inputs.buffers.traits().metal),
       transport_(inputs.device, inputs.buffers),
-      photons_(inputs.device, settings.grid * settings.grid) {
-  photons_.batch = {.emitted_count = settings.grid * settings.grid,
-                    .grid_width = settings.grid,
-                    .grid_height = settings.grid,
-                    .band_count = 1};
-  if (inputs.buffers.traits().specular.disperses) bands_ = makeBands(static_cast<int>(settings.bands));
+      bands_(inputs.buffers.traits().specular.disperses ? makeBands(static_cast<int>(settings.bands))
+                                                        : std::vector<Band>{{0.0F, vec3(1.0F)}}),
+      photons_(makePhotons()) {
   makeSources();
 }
 
 CausticMap::~CausticMap() = default;
+
+PhotonBuffer CausticMap::makePhotons() const {
+  PhotonBuffer photons(inputs_.device, settings_.grid * settings_.grid, settings_.grid);
+  photons.batch = {.emitted_count = photons.capacity(),
+                   .grid_width = settings_.grid,
+                   .grid_height = settings_.grid,
+                   .band_count = static_cast<std::uint32_t>(bands_.size())};
+  return photons;
+}
 
 void CausticMap::makeSources() {
   const std::vector<SceneBuffers::Draw>& draws = inputs_.buffers.draws();
@@ -167,8 +176,8 @@ void CausticMap::record(gpu::CommandRecorder& recorder, const RealtimeSample& sa
     if (point.is_new) recordPictures(recorder, point.view, *pictures);
     if (pictures->emission.empty()) continue;
     const auto into = [&](const DepositSurfaces& surfaces, std::uint32_t views, float weight, const FluxMap& map) {
-      follow(recorder, sample.index, point, nullptr, [&] {
-        deposit(views).record(recorder, photons_, surfaces, weight, settings_.splat_radius, inputs_.buffers.sampler(),
+      emit(recorder, sample.index, point, [&](const PhotonBuffer& photons) {
+        deposit(views).record(recorder, photons, surfaces, weight, settings_.splat_radius, inputs_.buffers.sampler(),
                               map);
       });
     };
@@ -182,10 +191,13 @@ void CausticMap::record(gpu::CommandRecorder& recorder, const RealtimeSample& sa
       const std::uint32_t size = pictures->receivers->size();
       map = FluxMap(inputs_.device, size, size, views, directions_);
     }
-    map.clear(recorder, point.most_flux);
     const DepositSurfaces surfaces{pictures->receivers->views(), pictures->receivers->surfaces(),
                                    settings_.receiver_layers};
-    into(surfaces, views, 1.0F, map);
+    if (!pictures->map_is_kept) {
+      map.clear(recorder, point.most_flux);
+      into(surfaces, views, 1.0F, map);
+      pictures->map_is_kept = keeps(point);
+    }
     lookUp(sample.surfaces.isForeign(), views).record(recorder, sample, sample.weight * point.weight, surfaces, map);
   }
   if (into_pixels) pixel_deposit_->finish(recorder, sample);
@@ -193,6 +205,8 @@ void CausticMap::record(gpu::CommandRecorder& recorder, const RealtimeSample& sa
 
 void CausticMap::recordPictures(gpu::CommandRecorder& recorder, const LightView& view, Pictures& pictures) {
   pictures.emission = emissionViews(view.light);
+  pictures.map_is_kept = false;
+  pictures.photons.clear();
   if (pictures.emission.empty()) return;
   if (!pictures.light.valid())
     pictures.light = gpu::Buffer(inputs_.device, sizeof(LightRecord), VK_BUFFER_USAGE_STORAGE_BUFFER_BIT,
@@ -208,8 +222,26 @@ void CausticMap::recordPictures(gpu::CommandRecorder& recorder, const LightView&
   pictures.receivers->record(recorder, view.views, receivers_);
 }
 
-void CausticMap::follow(gpu::CommandRecorder& recorder, std::uint32_t sample, const Point& point, PhotonLedger* ledger,
-                        const std::function<void()>& deposit_photons) {
+bool CausticMap::keeps(const Point& point) const { return settings_.emits_once && !point.view.varies; }
+
+void CausticMap::emit(gpu::CommandRecorder& recorder, std::uint32_t sample, const Point& point,
+                      const std::function<void(const PhotonBuffer&)>& use) {
+  if (!keeps(point)) {
+    follow(
+        recorder, sample, point, [&]() -> PhotonBuffer& { return photons_; }, nullptr, use);
+    return;
+  }
+  std::deque<PhotonBuffer>& kept = point.source->pictures->photons;
+  if (kept.empty())
+    follow(
+        recorder, 0, point, [&]() -> PhotonBuffer& { return kept.emplace_back(makePhotons()); }, nullptr,
+        [](const PhotonBuffer&) {});
+  for (const PhotonBuffer& photons : kept) use(photons);
+}
+
+void CausticMap::follow(gpu::CommandRecorder& recorder, std::uint32_t sample, const Point& point,
+                        const std::function<PhotonBuffer&()>& next, PhotonLedger* ledger,
+                        const std::function<void(const PhotonBuffer&)>& use) {
   const Pictures& pictures = *point.source->pictures;
   const LightPictures followed{pictures.emission, generator_bounds_,    scene_bounds_,      point.view.views,
                                *pictures.first,   *pictures.generators, *pictures.receivers};
@@ -219,16 +251,22 @@ void CausticMap::follow(gpu::CommandRecorder& recorder, std::uint32_t sample, co
                               // The first sample is that of the cells' middles, as a single picture should be.
                               .offset = sample == 0 ? vec2(0.5F) : sampler.next2D(),
                               .max_events = settings_.max_events,
+                              .seed = hashChain(inputs_.seed, sample),
                               .iterations = settings_.iterations,
+                              .receiver_iterations = settings_.receiver_iterations,
+                              .search = settings_.search,
+                              .exit = settings_.exit,
+                              .first_guess = settings_.first_guess,
                               .account = ledger ? &ledger->account() : nullptr};
   for (transport.band_index = 0; transport.band_index < bands_.size(); ++transport.band_index) {
     transport.band = bands_[transport.band_index];
     for (std::uint32_t v = 0; v < countOf(pictures.emission); ++v)
       for (transport.branch = 0; transport.branch <= last; ++transport.branch) {
         transport.is_last = transport.branch == last;
-        transport_.record(recorder, followed, pictures.light, 0, v, transport, photons_);
-        if (ledger) ledger->record(recorder, photons_, photons_.capacity(), 0, transport.branch);
-        deposit_photons();
+        const PhotonBuffer& photons = next();
+        transport_.record(recorder, followed, pictures.light, 0, v, transport, photons);
+        if (ledger) ledger->record(recorder, photons, photons.capacity(), 0, transport.branch);
+        use(photons);
       }
   }
 }
@@ -250,7 +288,8 @@ std::vector<Ledger> CausticMap::account() {
     recorder.begin();
     if (point.is_new) recordPictures(recorder, point.view, *pictures);
     ledger.begin();
-    follow(recorder, 0, point, &ledger, [] {});
+    follow(
+        recorder, 0, point, [&]() -> PhotonBuffer& { return photons_; }, &ledger, [](const PhotonBuffer&) {});
     recorder.submit();
     recorder.wait();
     Ledger of_point = ledger.read(0);
@@ -309,7 +348,31 @@ std::vector<ParamSpec> makeParams() {
        "",
        "inside a solid that are followed before light leaves it",
        {}},
-      {"iterations", number(defaults.iterations), 1, 64, "", "to find where a ray meets a surface", {}},
+      {"iterations", number(defaults.iterations), 1, 64, "", "to find where a ray meets what bends it", {}},
+      {"receiver-iterations", number(defaults.receiver_iterations), 1, 64, "", "to find where it ends", {}},
+      {"search",
+       std::string("planes"),
+       0,
+       0,
+       "",
+       "how the receiver is found: Newton's method on the planes of texels, from steps along the ray on; or as the "
+       "paper "
+       "and those it compares with do",
+       {"planes", "iterate", "newton", "secant", "march"}},
+      {"exit",
+       std::string("planes"),
+       0,
+       0,
+       "",
+       "how the back face is found: as receivers are, or by Wyman's approximation",
+       {"planes", "wyman"}},
+      {"first-guess",
+       0.0F,
+       0,
+       1e6,
+       "m",
+       "of the distance, for all but planes and march; 0: what is seen where the ray starts",
+       {}},
       {"bands",
        number(defaults.bands),
        1,
@@ -333,10 +396,25 @@ std::vector<ParamSpec> makeParams() {
        "",
        "the picture that photons are deposited into: the camera's own pixels, or a map in the light's view",
        {"camera", "light"}},
+      {"emit",
+       std::string("every-frame"),
+       0,
+       0,
+       "",
+       "whether lights without a size send other photons in each sample, or keep them until something changes",
+       {"every-frame", "once"}},
       {"splat-radius", defaults.splat_radius, 0.5, 32, "texels", "of a splat", {}},
   };
   params.insert(params.end(), own.begin(), own.end());
   return params;
+}
+
+Search searchOf(const std::string& name) {
+  if (name == "iterate") return Search::kIterate;
+  if (name == "newton") return Search::kNewton;
+  if (name == "secant") return Search::kSecant;
+  if (name == "march") return Search::kMarch;
+  return Search::kPlanes;
 }
 
 CausticMapSettings makeSettings(const ParamSet& params) {
@@ -349,11 +427,16 @@ CausticMapSettings makeSettings(const ParamSet& params) {
   settings.receiver_layers = count("receiver-layers");
   settings.internal_reflections = count("internal-reflections");
   settings.iterations = count("iterations");
+  settings.receiver_iterations = count("receiver-iterations");
+  settings.search = searchOf(params.getString("search"));
+  settings.exit = params.getString("exit") == "wyman" ? Exit::kWyman : Exit::kPlanes;
+  settings.first_guess = params.getFloat("first-guess");
   settings.bands = count("bands");
   settings.points = count("points");
   settings.directions = count("directions");
   if (params.getString("reconstruct") == "splats") settings.reconstruction = Reconstruction::kSplats;
   if (params.getString("target") == "light") settings.target = DepositTarget::kLight;
+  settings.emits_once = params.getString("emit") == "once";
   settings.splat_radius = params.getFloat("splat-radius");
   return settings;
 }

@@ -32,7 +32,11 @@ struct CausticMapSettings {
   std::uint32_t layers = 4;           ///< surfaces behind one another that light is followed through, from the light
   std::uint32_t receiver_layers = 2;  ///< likewise that it may end on
   std::uint32_t internal_reflections = 2;
-  std::uint32_t iterations = 8;   ///< to find where a ray meets a surface
+  std::uint32_t iterations = 8;           ///< to find where a ray meets a generator,
+  std::uint32_t receiver_iterations = 8;  ///< and a receiver
+  Search search = Search::kPlanes;
+  Exit exit = Exit::kPlanes;
+  float first_guess = 0.0F;       ///< of the paper's methods, m; 0: what is seen where the ray starts
   std::uint32_t max_events = 8;   ///< of class S, on the way of a photon
   std::uint32_t bands = 7;        ///< of wavelength, where a material disperses
   std::uint32_t points = 4;       ///< that a light with a size is taken for, each sample
@@ -40,6 +44,9 @@ struct CausticMapSettings {
   Reconstruction reconstruction = Reconstruction::kQuads;
   float splat_radius = 1.5F;  ///< texels
   DepositTarget target = DepositTarget::kCamera;
+  /// Photons of lights without a size stay, in the middles of their cells, until a light or an object changes; else
+  /// each sample has its own.
+  bool emits_once = false;
 };
 
 /// One map for each light, or for each point of it, drawn and looked up in one sample.
@@ -68,9 +75,17 @@ class CausticMap : public RealtimeTechnique {
   std::vector<ViewRecord> emissionViews(const LightRecord& light) const;
   void recordPictures(gpu::CommandRecorder& recorder, const LightView& view, Pictures& pictures);
   /// From the light to where its photons end, one view, branch and band after the other.
+  /// @param next    where the next photons are written
   /// @param ledger  null: nobody asks what becomes of them
-  void follow(gpu::CommandRecorder& recorder, std::uint32_t sample, const Point& point, PhotonLedger* ledger,
-              const std::function<void()>& deposit_photons);
+  /// @param use     called when they are
+  void follow(gpu::CommandRecorder& recorder, std::uint32_t sample, const Point& point,
+              const std::function<PhotonBuffer&()>& next, PhotonLedger* ledger,
+              const std::function<void(const PhotonBuffer&)>& use);
+  /// Likewise without a ledger, or what was kept.
+  void emit(gpu::CommandRecorder& recorder, std::uint32_t sample, const Point& point,
+            const std::function<void(const PhotonBuffer&)>& use);
+  bool keeps(const Point& point) const;
+  PhotonBuffer makePhotons() const;
   LookUp& lookUp(bool foreign, std::uint32_t views);
   Deposit& deposit(std::uint32_t views);
 
@@ -79,10 +94,10 @@ class CausticMap : public RealtimeTechnique {
   bool directions_;                                        ///< surfaces ask where light comes from
   std::vector<std::size_t> all_, generators_, receivers_;  ///< of the scene's draws
   Bounds generator_bounds_, scene_bounds_;
-  std::vector<Band> bands_{{0.0F, vec3(1.0F)}};  ///< one for all where nothing disperses light
   std::unique_ptr<LightViews> lights_;
   Transport transport_;
-  PhotonBuffer photons_;
+  std::vector<Band> bands_;                      ///< one for all where nothing disperses light
+  PhotonBuffer photons_;                         ///< of what is not kept
   std::unique_ptr<PixelDeposit> pixel_deposit_;  ///< where pixels are deposited into
   std::vector<std::unique_ptr<Deposit>> deposits_;
   std::vector<std::unique_ptr<LookUp>> look_ups_;
