@@ -1,6 +1,7 @@
 // Scenes of a few lines for tests of transport: everything in view, nothing left to chance.
 #pragma once
 
+#include <cmath>
 #include <utility>
 
 #include "scene/builtin/shapes.h"
@@ -103,6 +104,16 @@ inline dvec3 meanOf(const Image& image) {
   for (int y = 0; y < image.height; ++y)
     for (int x = 0; x < image.width; ++x) sum += dvec3(image.rgb(x, y));
   return sum / (static_cast<double>(image.width) * image.height);
+}
+
+/// Σ|a − b| / Σ|b| over all pixels and channels.
+inline double relativeDifference(const Image& a, const Image& b) {
+  double difference = 0.0, sum = 0.0;
+  for (std::size_t i = 0; i < a.pixels.size(); ++i) {
+    difference += std::abs(static_cast<double>(a.pixels[i]) - b.pixels[i]);
+    sum += std::abs(static_cast<double>(b.pixels[i]));
+  }
+  return difference / sum;
 }
 
 }  // namespace nephroid::test

@@ -47,15 +47,6 @@ class CausticMapTest : public testing::GpuTest {
   }
 };
 
-double relativeDifference(const Image& a, const Image& b) {
-  double difference = 0.0, sum = 0.0;
-  for (std::size_t i = 0; i < a.pixels.size(); ++i) {
-    difference += std::abs(static_cast<double>(a.pixels[i]) - b.pixels[i]);
-    sum += std::abs(static_cast<double>(b.pixels[i]));
-  }
-  return difference / sum;
-}
-
 TEST_F(CausticMapTest, IndexOneLeavesDirectPlusCausticAsWithoutTheObject) {
   const SceneData with = makeSunlitBall(test::makeGlass(1.0F));
   SceneData without = with;
@@ -91,7 +82,7 @@ TEST_F(CausticMapTest, TwoLightsAdd) {
   Image sum = draw(first, lookAtFloor());
   const Image other = draw(second, lookAtFloor());
   for (std::size_t i = 0; i < sum.pixels.size(); ++i) sum.pixels[i] += other.pixels[i];
-  EXPECT_LT(relativeDifference(draw(both, lookAtFloor()), sum), 1e-4);
+  EXPECT_LT(test::relativeDifference(draw(both, lookAtFloor()), sum), 1e-4);
 }
 
 TEST_F(CausticMapTest, ScaleOfTheSceneChangesNothingUnderASun) {
@@ -100,7 +91,7 @@ TEST_F(CausticMapTest, ScaleOfTheSceneChangesNothingUnderASun) {
     SceneData scaled = makeSunlitBall(test::makeGlass(1.5F));
     for (Instance& instance : scaled.instances) instance.world_from_object = glm::scale(mat4(1.0F), vec3(scale));
     // Rounding moves photons at the ball's rim.
-    EXPECT_LT(relativeDifference(draw(scaled, lookAtFloor(scale)), one), 0.01) << scale;
+    EXPECT_LT(test::relativeDifference(draw(scaled, lookAtFloor(scale)), one), 0.01) << scale;
   }
 }
 
@@ -129,7 +120,7 @@ TEST_F(CausticMapTest, TheLightsMapShowsWhatPixelsShow) {
     const Image pixels = drawInto(DepositTarget::kCamera), map = drawInto(DepositTarget::kLight);
     EXPECT_NEAR(test::meanOf(map).x / test::meanOf(pixels).x, 1.0, 0.02) << is_sun;
     // Folds are narrower than pixels.
-    EXPECT_LT(relativeDifference(map, pixels), 0.2) << is_sun;
+    EXPECT_LT(test::relativeDifference(map, pixels), 0.2) << is_sun;
   }
 }
 

@@ -12,6 +12,7 @@ using test::addObject;
 using test::makeGlass;
 using test::makeSettings;
 using test::meanOf;
+using test::relativeDifference;
 using test::renderReference;
 
 /// Sees the floor from the side, the ball's caustic in the middle.
@@ -24,15 +25,6 @@ SceneData makeSunlitBall(Material material) {
   SceneData scene = test::makeBallScene(std::move(material), 128);
   scene.lights.push_back(test::makeSun(vec3(0.3F, -1, 0.1F), vec3(5.0F, 4.0F, 3.0F), 0.5F));
   return scene;
-}
-
-double relativeDifference(const Image& a, const Image& b) {
-  double difference = 0.0, sum = 0.0;
-  for (std::size_t i = 0; i < a.pixels.size(); ++i) {
-    difference += std::abs(static_cast<double>(a.pixels[i]) - b.pixels[i]);
-    sum += std::abs(static_cast<double>(b.pixels[i]));
-  }
-  return difference / sum;
 }
 
 TEST(Identity, IndexOneLeavesDirectPlusCausticAsWithoutTheObject) {
