@@ -107,7 +107,10 @@ Piece quarterOf(ivec2 first, Cell cell, uint corner) {
   piece.light = Light(kMakesQuads ? 0.25 * own.flux : own.flux, own.direction);
   vec3 across = vec3(0.0), down = vec3(0.0);
   bool goes_across = halfStep(at, own, ivec2(side.x, 0), across), goes_down = halfStep(at, own, ivec2(0, side.y), down);
-  piece.is_cell = is_valid && kMakesQuads && goes_across && goes_down;
+  // With neighbours along one direction of the grid alone it is as long across them.
+  if (goes_across && !goes_down) down = cross(own.direction, across);
+  if (goes_down && !goes_across) across = cross(own.direction, down);
+  piece.is_cell = is_valid && kMakesQuads && (goes_across || goes_down);
   piece.is_splat = is_valid && !piece.is_cell;
   piece.places = vec3[4](own.position, own.position + across, own.position + across + down, own.position + down);
   return piece;
