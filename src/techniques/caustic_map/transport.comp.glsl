@@ -170,6 +170,18 @@ void meetGenerator(inout Flight flight, Met met) {
   flight.closed += is_closed ? countSolids(flight.path.interior) - solids : 0;
 }
 
+/// Ends the flight on a surface that no light passes; arriveAtEnd is to follow.
+void endOn(inout Flight flight, Met met) {
+  flight.chain = hashChain(flight.chain, 2u * met.instance);
+  flight.path.ended = true;
+  flight.outcome = flight.path.events == 0u ? kOutcomeBlocked : kOutcomeDeposited;
+}
+
+/// Follows what ended so through what absorbs: once, not in each turn of the loop, which all threads take together.
+void arriveAtEnd(inout Flight flight, Met met) {
+  if (kSceneHasMedia && flight.path.ended && flight.outcome == kOutcomeDeposited) arrive(flight, met);
+}
+
 /// Ends the flight on a surface, or leads it straight through, as shadows are: panes tint it, of what is partly there a
 /// share lets it pass.
 void meetReceiver(inout Flight flight, Met met) {
@@ -177,13 +189,13 @@ void meetReceiver(inout Flight flight, Met met) {
   flight.chain = hashChain(flight.chain, 2u * met.instance);
   bool is_first = flight.path.events == 0u;
   vec3 pass = vec3(0.0);
-  if (kSceneHasPassable && !isBlocker(met.instance)) {
+  if (!isBlocker(met.instance)) {
     bool is_hole = draw(flight.path) >= e.material.coverage;
     MaterialPoint whole = e.material;
     whole.coverage = 1.0;
     pass = is_hole ? vec3(1.0) : passTransmittance(whole, abs(dot(flight.path.ray.dir, e.surface.shading)));
   }
-  if (!kSceneHasPassable || largest(pass) <= 0.0) {
+  if (largest(pass) <= 0.0) {
     flight.path.ended = true;
     flight.outcome = is_first ? kOutcomeBlocked : kOutcomeDeposited;
     return;
@@ -219,7 +231,9 @@ Met meetNext(inout Flight flight, Pictures generators, Pictures receivers) {
   t_end = leaveBox(ray, push.scene_lower, push.scene_upper);
   Met receiver;
   if (kSearch == kSearchPlanes) {
-    receiver = meetLayers(ray, t_end, met.t, start, receivers, receiver_seen, receiver_surfaces, receiver_depths,
+    // A cell that the branch before has left to this one meets no receiver before their ways part.
+    bool has_forked = !kListed || kSceneHasPassable || flight.chances + 1u >= push.branch;
+    receiver = meetLayers(ray, t_end, has_forked ? met.t : -kFarAway, start, receivers, receiver_seen, receiver_surfaces, receiver_depths,
                           push.receiver_iterations, hidden_receiver);
     flight.place = ray.origin + receiver.t * ray.dir;
   } else {
@@ -304,17 +318,25 @@ void main() {
   else if (isBlocker(met.instance)) flight.outcome = kOutcomeBlocked;
   flight.path.ended = flight.outcome != kOutcomeDeposited;
 
+  // Before the loop, which looks for the next surface even where no thread needs it: all that is met first bends light.
+  if (!kSceneHasPassable && !flight.path.ended) {
+    flight.last_distance = met.t;
+    meetGenerator(flight, met);
+  }
   // Surfaces of solids that others rule are no events.
-  for (uint i = 0u; i < 2u * max_events && !flight.path.ended; ++i) {
+  for (uint i = kSceneHasPassable ? 0u : 1u; i < 2u * max_events && !flight.path.ended; ++i) {
     if (i > 0u) met = meetNext(flight, generators, receivers);
     if (flight.path.ended) continue;
     flight.last_distance = met.t;
     if ((fetchInstance(met.instance).flags & kInstanceGenerates) != 0u) {
       meetGenerator(flight, met);
-    } else {
+    } else if (kSceneHasPassable) {
       meetReceiver(flight, met);
+    } else {
+      endOn(flight, met);
     }
   }
+  if (!kSceneHasPassable) arriveAtEnd(flight, met);
   if (!flight.path.ended) flight.outcome = kOutcomeBounceLimit;
   leaveToOthers(flight);
   uint index = cell.y * push.grid + cell.x;
