@@ -45,7 +45,7 @@ SurfaceLayers::SurfaceLayers(gpu::Device& device, const SceneBuffers& buffers, s
       next_(makeDraw(device, shaders::peel_frag, SceneBuffers::bindings({kTable, kTexture}), buffers, "next layer")),
       places_(device,
               {.shader = shaders::surface_layers_comp,
-               .bindings = SceneBuffers::bindings({kTable, kTexture, kStorage}),
+               .bindings = SceneBuffers::bindings({kTable, kTexture, kStorage, kStorage}),
                .push_bytes = sizeof(std::uint32_t),
                .constants = buffers.traits().constants()},
               "places of layers"),
@@ -55,8 +55,10 @@ SurfaceLayers::SurfaceLayers(gpu::Device& device, const SceneBuffers& buffers, s
       seen_(makeLayers(device, kSeenFormat, size, views * layers,
                        VK_IMAGE_USAGE_COLOR_ATTACHMENT_BIT | VK_IMAGE_USAGE_SAMPLED_BIT, "seen in layers")),
       surfaces_(makeLayers(device, kFloat4, size, views * layers,
-                           VK_IMAGE_USAGE_STORAGE_BIT | VK_IMAGE_USAGE_SAMPLED_BIT, "surfaces in layers")) {
-  for (gpu::Image& depth : depths_)
+                           VK_IMAGE_USAGE_STORAGE_BIT | VK_IMAGE_USAGE_SAMPLED_BIT, "surfaces in layers")),
+      depths_(makeLayers(device, kFloat4, size, views * gpu::groupsOf(layers, 4),
+                         VK_IMAGE_USAGE_STORAGE_BIT | VK_IMAGE_USAGE_SAMPLED_BIT, "depths in layers")) {
+  for (gpu::Image& depth : drawn_depths_)
     depth = gpu::Image(device,
                        {.format = kDepthFormat,
                         .width = size,
@@ -72,22 +74,22 @@ void SurfaceLayers::record(gpu::CommandRecorder& recorder, std::span<const ViewR
   recorder.upload(views_, std::as_bytes(views));
   for (std::uint32_t v = 0; v < view_count_; ++v)
     for (std::uint32_t layer = 0; layer < layer_count_; ++layer) recordLayer(recorder, views[v], draws, v, layer);
-  const std::vector<Use> uses =
-      buffers_.uses(Access::kComputeRead, {Use(views_, Access::kComputeRead), Use(seen_, Access::kComputeRead),
-                                           Use(surfaces_, Access::kComputeWrite, true)});
+  const std::vector<Use> uses = buffers_.uses(
+      Access::kComputeRead, {Use(views_, Access::kComputeRead), Use(seen_, Access::kComputeRead),
+                             Use(surfaces_, Access::kComputeWrite, true), Use(depths_, Access::kComputeWrite, true)});
   recorder.pass("places of layers", uses, [&](PassCommands& commands) {
     commands.bind(places_);
-    commands.bindResources(
-        buffers_.bound({Bound(7, views_), Bound(8, seen_, buffers_.sampler()), Bound(9, surfaces_)}));
+    commands.bindResources(buffers_.bound(
+        {Bound(7, views_), Bound(8, seen_, buffers_.sampler()), Bound(9, surfaces_), Bound(10, depths_)}));
     commands.pushConstants(layer_count_);
     const std::uint32_t groups = gpu::groupsOf(size(), kPixelGroup);
-    commands.dispatch(groups, groups, view_count_ * layer_count_);
+    commands.dispatch(groups, groups, view_count_);
   });
 }
 
 void SurfaceLayers::recordLayer(gpu::CommandRecorder& recorder, const ViewRecord& view,
                                 std::span<const std::size_t> draws, std::uint32_t view_index, std::uint32_t layer) {
-  const gpu::Image &depth = depths_[layer % 2], &before = depths_[1 - layer % 2];
+  const gpu::Image &depth = drawn_depths_[layer % 2], &before = drawn_depths_[1 - layer % 2];
   const bool peels = layer > 0;
   // The layers before stay, so only the first use of the array may discard what was in it.
   std::vector<Use> uses = buffers_.uses(

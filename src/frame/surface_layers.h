@@ -38,6 +38,9 @@ class SurfaceLayers {
   /// RGBA32F array: place in the world, and the bits of packUnitVector of the normal that points out of the solid.
   /// Infinity where nothing is seen.
   const gpu::Image& surfaces() const { return surfaces_; }
+  /// RGBA32F array: the surfaces' places along the view's direction, dot(place, forward), in m; infinity where nothing
+  /// is seen. Four layers to a texel: layer k of view v is channel k mod 4 of v · ceil(layerCount() / 4) + k / 4.
+  const gpu::Image& depths() const { return depths_; }
 
  private:
   void recordLayer(gpu::CommandRecorder& recorder, const ViewRecord& view, std::span<const std::size_t> draws,
@@ -49,8 +52,8 @@ class SurfaceLayers {
   std::uint32_t view_count_ = 0;  ///< of those that were recorded last
   std::uint32_t layer_count_;
   gpu::Buffer views_;
-  gpu::Image seen_, surfaces_;
-  gpu::Image depths_[2];  ///< of the present layer and the one before, in turn
+  gpu::Image seen_, surfaces_, depths_;
+  gpu::Image drawn_depths_[2];  ///< of the present layer and the one before, in turn
 };
 
 }  // namespace nephroid

@@ -17,7 +17,10 @@ constexpr std::uint32_t kSize = 64;
 /// Layers read back: by layer, row by row.
 struct Layers {
   std::vector<std::uint32_t> seen;  ///< two words a texel
-  std::vector<vec4> surfaces;
+  std::vector<vec4> surfaces, depths;
+  float depth(std::uint32_t layer, std::size_t i) const {
+    return depths[layer / 4 * kSize * kSize + i][static_cast<int>(layer % 4)];
+  }
   bool isThere(std::uint32_t layer, std::size_t i) const { return seen[2 * (layer * kSize * kSize + i)] != 0; }
   vec3 place(std::uint32_t layer, std::size_t i) const { return vec3(surfaces[layer * kSize * kSize + i]); }
   vec3 normal(std::uint32_t layer, std::size_t i) const {
@@ -42,6 +45,9 @@ class SurfaceLayersTest : public testing::GpuTest {
     const std::vector<std::byte> seen = gpu::readBack(device(), layers.seen());
     const std::vector<std::byte> surfaces = gpu::readBack(device(), layers.surfaces());
     result.seen.resize(seen.size() / sizeof(std::uint32_t));
+    const std::vector<std::byte> depths = gpu::readBack(device(), layers.depths());
+    result.depths.resize(depths.size() / sizeof(vec4));
+    std::memcpy(static_cast<void*>(result.depths.data()), depths.data(), depths.size());
     result.surfaces.resize(surfaces.size() / sizeof(vec4));
     std::memcpy(result.seen.data(), seen.data(), seen.size());
     std::memcpy(static_cast<void*>(result.surfaces.data()), surfaces.data(), surfaces.size());
@@ -107,6 +113,22 @@ TEST_F(SurfaceLayersTest, NothingIsSeenOfNothing) {
   view = makePerspectiveView(vec3(100, 0, 0), vec3(1, 0, 0), vec3(0, 1, 0), 0.1F, {1.0F, 10.0F});
   const Layers layers = draw(scene, view, 2);
   for (std::size_t i = 0; i < kSize * kSize; ++i) ASSERT_FALSE(layers.isThere(0, i) || layers.isThere(1, i));
+}
+
+TEST_F(SurfaceLayersTest, DepthsAreThoseOfSurfacesFourToATexel) {
+  const SceneData scene = test::makeBallScene(test::makeGlass(1.5F), 64);
+  const ViewRecord view = makeParallelView(normalize(vec3(0.3F, -1, 0.2F)), scene.bounds());
+  for (const std::uint32_t count : {1U, 3U, 6U}) {
+    const Layers layers = draw(scene, view, count);
+    ASSERT_EQ(layers.depths.size(), (count + 3) / 4 * kSize * kSize);
+    for (std::size_t i = 0; i < kSize * kSize; ++i)
+      for (std::uint32_t k = 0; k < (count + 3) / 4 * 4; ++k) {
+        if (k >= count || !layers.isThere(k, i))
+          ASSERT_TRUE(std::isinf(layers.depth(k, i))) << k;
+        else
+          ASSERT_NEAR(layers.depth(k, i), dot(layers.place(k, i), view.forward), 1e-5F) << k;
+      }
+  }
 }
 
 }  // namespace

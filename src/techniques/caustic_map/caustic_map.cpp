@@ -79,6 +79,7 @@ CausticMap::CausticMap(const RealtimeInputs& inputs, const CausticMapSettings& s
       settings_(settings),
       directions_(inputs.buffers.traits().gloss || inputs.buffers.traits().metal),
       transport_(inputs.device, inputs.buffers),
+      cell_lists_(transport_.makeCellLists(settings.grid)),
       bands_(inputs.buffers.traits().specular.disperses ? makeBands(static_cast<int>(settings.bands))
                                                         : std::vector<Band>{{0.0F, vec3(1.0F)}}),
       photons_(makePhotons()) {
@@ -246,7 +247,8 @@ void CausticMap::follow(gpu::CommandRecorder& recorder, std::uint32_t sample, co
   const LightPictures followed{pictures.emission, generator_bounds_,    scene_bounds_,      point.view.views,
                                *pictures.first,   *pictures.generators, *pictures.receivers};
   Sampler sampler(inputs_.seed, kCellStream, sample);
-  const std::uint32_t last = 1 + settings_.internal_reflections;
+  // Mirrors let nothing in.
+  const std::uint32_t last = inputs_.buffers.traits().specular.transmits ? 1 + settings_.internal_reflections : 0;
   TransportSettings transport{.grid = settings_.grid,
                               // The first sample is that of the cells' middles, as a single picture should be.
                               .offset = sample == 0 ? vec2(0.5F) : sampler.next2D(),
@@ -257,7 +259,8 @@ void CausticMap::follow(gpu::CommandRecorder& recorder, std::uint32_t sample, co
                               .search = settings_.search,
                               .exit = settings_.exit,
                               .first_guess = settings_.first_guess,
-                              .account = ledger ? &ledger->account() : nullptr};
+                              .account = ledger ? &ledger->account() : nullptr,
+                              .cell_lists = ledger ? nullptr : &cell_lists_};
   for (transport.band_index = 0; transport.band_index < bands_.size(); ++transport.band_index) {
     transport.band = bands_[transport.band_index];
     for (std::uint32_t v = 0; v < countOf(pictures.emission); ++v)

@@ -12,7 +12,7 @@
 
 /// Where the pictures of some views lie.
 struct Pictures {
-  uint first_view;   // among `layer_views`
+  uint first_view;   // among `picture_views`
   uint view_count;
   uint layer_count;  // of each view
   float size;        // texels along a side
@@ -45,26 +45,29 @@ const float kOnEdge = 1e-5;
 /// Steps between the ends of a ray.
 const uint kSteps = 16u;
 
-/// Of a place in the world in a view's picture.
-PicturePlace placeInView(ViewRecord view, uint index, vec3 place, float size) {
-  vec4 p = vec4(place, 1.0);
-  float x = dot(view.clip_row_x, p), y = dot(view.clip_row_y, p), w = dot(view.clip_row_w, p);
-  bool inside = w > 0.0 && abs(x) <= w && abs(y) <= w;
-  float inverse = inside ? 1.0 / w : 0.0;
-  vec2 texels = (vec2(x, y) * inverse * 0.5 + 0.5) * size;
-  return PicturePlace(inside, index, min(texels, vec2(size - 1e-3)), 2.0 * max(length(view.right), length(view.up)) * w / size,
-                      view.forward);
-}
-
 /// Of a place in the pictures of views of which no two overlap.
 PicturePlace placeInPictures(Pictures pictures, vec3 place) {
-  PicturePlace found = placeInView(layer_views[pictures.first_view], 0u, place, pictures.size);
+  vec4 p = vec4(place, 1.0);
+  vec3 clip = vec3(0.0), forward = vec3(0.0);
+  float extent = 0.0;
+  uint index = 0u;
+  bool inside = false;
   // Without a break: the compiler then knows each view's place in the buffer, and reads it once for all threads.
-  for (uint v = 1u; v < pictures.view_count; ++v) {
-    PicturePlace other = placeInView(layer_views[pictures.first_view + v], v, place, pictures.size);
-    if (!found.inside) found = other;
+  for (uint v = 0u; v < pictures.view_count; ++v) {
+    PictureView view = picture_views[pictures.first_view + v];
+    vec3 c = vec3(dot(view.clip_row_x, p), dot(view.clip_row_y, p), dot(view.clip_row_w, p));
+    bool shows = c.z > 0.0 && max(abs(c.x), abs(c.y)) <= c.z;
+    if (v == 0u || (shows && !inside)) {
+      clip = c;
+      forward = view.forward;
+      extent = view.extent;
+      index = v;
+    }
+    inside = inside || shows;
   }
-  return found;
+  float inverse = inside ? 1.0 / clip.z : 0.0;
+  vec2 texels = (clip.xy * inverse * 0.5 + 0.5) * pictures.size;
+  return PicturePlace(inside, index, min(texels, vec2(pictures.size - 1e-3)), extent * clip.z / pictures.size, forward);
 }
 
 /// Where a ray that starts in a box leaves it.
@@ -176,14 +179,21 @@ struct Sides {
   float texel_size;
 };
 
-Sides sidesOf(vec3 place, Pictures pictures, sampler2DArray surfaces) {
+uint bitsOf(bvec4 b) { return (b.x ? 1u : 0u) | (b.y ? 2u : 0u) | (b.z ? 4u : 0u) | (b.w ? 8u : 0u); }
+
+/// @param depths  of the layers, four to a texel (SurfaceLayers::depths): to step along a ray takes nothing else
+Sides sidesOf(vec3 place, Pictures pictures, sampler2DArray depths) {
   PicturePlace at = placeInPictures(pictures, place);
   Sides sides = Sides(at.inside, 0u, 0u, 0u, at.texel_size);
-  for (uint layer = 0u; layer < pictures.layer_count; ++layer) {
-    Look look = lookFrom(at, place, pictures, surfaces, layer);
-    sides.shown |= look.shown ? 1u << layer : 0u;
-    sides.behind |= look.behind > 0.0 ? 1u << layer : 0u;
-    sides.near |= look.shown && abs(look.behind) <= 2.0 * look.texel_size ? 1u << layer : 0u;
+  float depth = dot(place, at.forward);
+  uint texels = (pictures.layer_count + 3u) / 4u;
+  for (uint i = 0u; i < texels; ++i) {
+    vec4 seen = texelFetch(depths, ivec3(ivec2(at.texels), at.view * texels + i), 0);
+    vec4 behind = depth - seen;
+    uint shown = at.inside ? bitsOf(lessThan(seen, vec4(kFarAway))) : 0u;
+    sides.shown |= shown << 4u * i;
+    sides.behind |= (shown & bitsOf(greaterThan(behind, vec4(0.0)))) << 4u * i;
+    sides.near |= (shown & bitsOf(lessThanEqual(abs(behind), vec4(2.0 * at.texel_size)))) << 4u * i;
   }
   return sides;
 }
@@ -193,7 +203,10 @@ struct March {
   uint step;
   float t_before;
   float t;
-  Sides before;
+  uint shown;   // of Sides, at t
+  uint behind;
+  uint near;    // where it starts on a surface: the first step tells on which side
+  float slack;  // m, two texels
   uint candidates;    // layers that the ray may have passed in the last step
   uint shown_at_end;  // of these, those that are shown where it ends; the others where it begins
   bool hidden;      // it left the pictures before the scene
@@ -207,35 +220,39 @@ float distanceAfter(uint step, float t_end) {
 
 /// On to the next step in which the ray passes from one side of what is seen to the other, or past the outline of
 /// something round, which bends away there.
-void marchOn(inout March march, Ray ray, float t_end, Pictures pictures, sampler2DArray surfaces) {
+void marchOn(inout March march, Ray ray, float t_end, float t_enough, Pictures pictures, sampler2DArray depths) {
   // A step more than to where the ray leaves the scene: what it meets there may bound the scene.
-  while (march.candidates == 0u && march.step <= kSteps) {
+  while (march.candidates == 0u && march.step <= kSteps && march.t - march.slack <= t_enough) {
     ++march.step;
     march.t_before = march.t;
     march.t = distanceAfter(march.step, t_end);
-    Sides now = sidesOf(ray.origin + march.t * ray.dir, pictures, surfaces);
-    // Where it starts on a surface, the next step tells on which side.
-    if (march.step == 1u) march.before.behind = (march.before.behind & ~march.before.near) | (now.behind & march.before.near);
-    march.candidates = ((march.before.behind ^ now.behind) & march.before.shown & now.shown) |
-                       (march.before.shown ^ now.shown);
+    Sides now = sidesOf(ray.origin + march.t * ray.dir, pictures, depths);
+    uint behind = (march.behind & ~march.near) | (now.behind & march.near);
+    march.candidates = ((behind ^ now.behind) & march.shown & now.shown) | (march.shown ^ now.shown);
     march.shown_at_end = now.shown;
     if (!now.inside) {
       march.hidden = march.step <= kSteps;
       march.step = kSteps + 1u;
     }
-    march.before = now;
+    march.shown = now.shown;
+    march.behind = now.behind;
+    march.near = 0u;
+    march.slack = 2.0 * now.texel_size;
   }
 }
 
 /// The nearest surface over all layers, by steps to where the ray may pass one, and Newton's method there.
-/// @param t_end   where the ray leaves the scene
-/// @param hidden  set if it leaves the pictures before
-Met meetLayers(Ray ray, float t_end, Start start, Pictures pictures, usampler2DArray seen_layers,
-               sampler2DArray surfaces, uint iterations, inout bool hidden) {
+/// @param t_end     where the ray leaves the scene
+/// @param t_enough  what is met farther away does not count
+/// @param hidden    set if it leaves the pictures before
+Met meetLayers(Ray ray, float t_end, float t_enough, Start start, Pictures pictures, usampler2DArray seen_layers,
+               sampler2DArray surfaces, sampler2DArray depths, uint iterations, inout bool hidden) {
   Met best = Met(kFarAway, 0.0, 0.0, kNowhere, 0u);
-  March march = March(0u, 0.0, 0.0, sidesOf(ray.origin, pictures, surfaces), 0u, 0u, false);
-  while (best.instance == kNowhere && (march.step <= kSteps || march.candidates != 0u)) {
-    marchOn(march, ray, t_end, pictures, surfaces);
+  Sides first = sidesOf(ray.origin, pictures, depths);
+  March march = March(0u, 0.0, 0.0, first.shown, first.behind, first.near, 2.0 * first.texel_size, 0u, 0u, false);
+  while (best.instance == kNowhere &&
+         ((march.step <= kSteps && march.t - march.slack <= t_enough) || march.candidates != 0u)) {
+    marchOn(march, ray, t_end, t_enough, pictures, depths);
     // One layer after the other, of those that were passed in the same step.
     do {
       uint layer = uint(max(findLSB(march.candidates), 0));
@@ -245,8 +262,7 @@ Met meetLayers(Ray ray, float t_end, Start start, Pictures pictures, usampler2DA
         float first = (march.shown_at_end >> layer & 1u) != 0u ? march.t : march.t_before;
         Met met = approach(ray, first, start, pictures, seen_layers, surfaces, layer, iterations);
         // What is met lies in the step, or Newton's method has led to another place.
-        float slack = 2.0 * march.before.texel_size;
-        if (met.t >= march.t_before - slack && met.t <= march.t + slack && met.t < best.t) best = met;
+        if (met.t >= march.t_before - march.slack && met.t <= march.t + march.slack && met.t < best.t) best = met;
       }
     } while (march.candidates != 0u);
   }

@@ -1,4 +1,5 @@
-// From the light to where its photons end: one thread a cell of the emission grid, one branch a dispatch.
+// From the light to where its photons end: one thread a cell of the emission grid, one branch a dispatch. Either all
+// cells, or those of a list, which also makes the next branch's list.
 //
 // Emission, refraction at front and back faces, and the receiver, all in pictures that the light takes
 // ([shah-caustics-mapping] §III-B to D). Photons stay in the order of the grid; those that end nowhere say why.
@@ -11,7 +12,10 @@
 layout(push_constant, scalar) uniform Push { TransportPush push; };
 #define max_events push.max_events
 
-layout(scalar, set = 0, binding = 7) readonly buffer LayerViews { ViewRecord layer_views[]; };
+layout(scalar, set = 0, binding = 7) readonly buffer Views {
+  ViewRecord emission_views[kMostEmissionViews];
+  PictureView picture_views[];  // the same, then those of receivers
+};
 layout(set = 0, binding = 16) uniform usampler2D neighbour_table;
 layout(constant_id = 21) const uint kSearch = kSearchPlanes;
 layout(constant_id = 22) const uint kExit = kExitPlanes;
@@ -19,12 +23,15 @@ layout(constant_id = 22) const uint kExit = kExitPlanes;
 #include "frame/emission.shared.h"
 #define NEPHROID_PHOTON_BINDING 14
 #include "frame/photons.glsl"
+#define NEPHROID_CELL_LISTS_BINDING 19
+#include "techniques/caustic_map/cell_lists.glsl"
 
 layout(constant_id = 20) const bool kAccounts = false;  // keeps the ledger's accounts: costs time
 layout(constant_id = 23) const uint kGeneratorViews = 1u;
 layout(constant_id = 24) const uint kGeneratorLayers = 1u;
 layout(constant_id = 25) const uint kReceiverViews = 1u;
 layout(constant_id = 26) const uint kReceiverLayers = 1u;
+layout(constant_id = 27) const bool kListed = false;
 layout(local_size_x = 8, local_size_y = 8) in;
 layout(scalar, set = 0, binding = 8) readonly buffer Lights { LightRecord lights[]; };
 layout(set = 0, binding = 9) uniform usampler2DArray first_seen;  // of the emission's views: all that there is
@@ -32,6 +39,10 @@ layout(set = 0, binding = 10) uniform usampler2DArray generator_seen;
 layout(set = 0, binding = 11) uniform sampler2DArray generator_surfaces;
 layout(set = 0, binding = 12) uniform usampler2DArray receiver_seen;
 layout(set = 0, binding = 13) uniform sampler2DArray receiver_surfaces;
+layout(set = 0, binding = 17) uniform sampler2DArray generator_depths;
+layout(set = 0, binding = 18) uniform sampler2DArray receiver_depths;
+
+#include "techniques/caustic_map/first_met.glsl"
 
 layout(scalar, set = 0, binding = 15) writeonly buffer Accounts { PhotonAccount accounts[]; };
 
@@ -42,6 +53,7 @@ struct Flight {
   uint outcome;
   uint chances;         // to leave what it is inside of, that it passed
   bool decided;         // the branch has nothing more to say
+  bool forks;           // the next branch goes another way than this one
   int closed;           // closed solids that it is inside of
   float last_distance;  // m, since the last event
   vec3 place;           // on what was met last
@@ -64,6 +76,7 @@ struct Choice {
 Choice chooseWay(Way reflected, Way transmitted, uint events, bool is_inside, inout Flight flight) {
   if (events == 0u) {
     flight.decided = push.branch == 0u;
+    flight.forks = flight.decided && largest(transmitted.weight) > 0.0;
     vec3 rest = flight.decided && push.is_last != 0u ? transmitted.weight : vec3(0.0);
     return Choice(flight.decided ? reflected : transmitted, rest, false);
   }
@@ -71,6 +84,7 @@ Choice chooseWay(Way reflected, Way transmitted, uint events, bool is_inside, in
   if (is_inside && can_leave && !flight.decided) {
     ++flight.chances;
     flight.decided = flight.chances == push.branch;
+    flight.forks = flight.decided && largest(reflected.weight) > 0.0;
     vec3 rest = flight.decided && push.is_last != 0u ? reflected.weight : vec3(0.0);
     return Choice(flight.decided ? transmitted : reflected, rest, true);
   }
@@ -156,10 +170,16 @@ void meetGenerator(inout Flight flight, Met met) {
   flight.closed += is_closed ? countSolids(flight.path.interior) - solids : 0;
 }
 
-/// What light neither is bent by nor may pass straight through.
-bool isBlocker(uint instance) {
-  uint passes = kInstanceGenerates | (kSceneHasPassable ? kInstancePassable : 0u);
-  return (fetchInstance(instance).flags & passes) == 0u;
+/// Ends the flight on a surface that no light passes; arriveAtEnd is to follow.
+void endOn(inout Flight flight, Met met) {
+  flight.chain = hashChain(flight.chain, 2u * met.instance);
+  flight.path.ended = true;
+  flight.outcome = flight.path.events == 0u ? kOutcomeBlocked : kOutcomeDeposited;
+}
+
+/// Follows what ended so through what absorbs: once, not in each turn of the loop, which all threads take together.
+void arriveAtEnd(inout Flight flight, Met met) {
+  if (kSceneHasMedia && flight.path.ended && flight.outcome == kOutcomeDeposited) arrive(flight, met);
 }
 
 /// Ends the flight on a surface, or leads it straight through, as shadows are: panes tint it, of what is partly there a
@@ -169,13 +189,13 @@ void meetReceiver(inout Flight flight, Met met) {
   flight.chain = hashChain(flight.chain, 2u * met.instance);
   bool is_first = flight.path.events == 0u;
   vec3 pass = vec3(0.0);
-  if (kSceneHasPassable && !isBlocker(met.instance)) {
+  if (!isBlocker(met.instance)) {
     bool is_hole = draw(flight.path) >= e.material.coverage;
     MaterialPoint whole = e.material;
     whole.coverage = 1.0;
     pass = is_hole ? vec3(1.0) : passTransmittance(whole, abs(dot(flight.path.ray.dir, e.surface.shading)));
   }
-  if (!kSceneHasPassable || largest(pass) <= 0.0) {
+  if (largest(pass) <= 0.0) {
     flight.path.ended = true;
     flight.outcome = is_first ? kOutcomeBlocked : kOutcomeDeposited;
     return;
@@ -206,12 +226,15 @@ Met meetNext(inout Flight flight, Pictures generators, Pictures receivers) {
   if (kExit == kExitWyman && has_entered)
     met = meetBackFace(ray, flight.normal, flight.from, generators, generator_seen, generator_surfaces);
   else
-    met = meetLayers(ray, t_end, start, generators, generator_seen, generator_surfaces, push.iterations, hidden);
+    met = meetLayers(ray, t_end, kFarAway, start, generators, generator_seen, generator_surfaces, generator_depths,
+                     push.iterations, hidden);
   t_end = leaveBox(ray, push.scene_lower, push.scene_upper);
   Met receiver;
   if (kSearch == kSearchPlanes) {
-    receiver = meetLayers(ray, t_end, start, receivers, receiver_seen, receiver_surfaces, push.receiver_iterations,
-                          hidden_receiver);
+    // A cell that the branch before has left to this one meets no receiver before their ways part.
+    bool has_forked = !kListed || kSceneHasPassable || flight.chances + 1u >= push.branch;
+    receiver = meetLayers(ray, t_end, has_forked ? met.t : -kFarAway, start, receivers, receiver_seen, receiver_surfaces, receiver_depths,
+                          push.receiver_iterations, hidden_receiver);
     flight.place = ray.origin + receiver.t * ray.dir;
   } else {
     receiver = searchReceiver(ray, t_end, push.first_guess, receivers, receiver_seen, receiver_surfaces, 0u,
@@ -261,11 +284,22 @@ Photon describe(Flight flight, uint index) {
   return photon;
 }
 
+/// @return  false: this thread has none
+bool chooseCell(out uvec2 cell) {
+  cell = gl_GlobalInvocationID.xy;
+  if (!kListed) return cell.x < push.grid && cell.y < push.grid;
+  uint i = (gl_WorkGroupID.y * kMostGroups + gl_WorkGroupID.x) * kListGroup + gl_LocalInvocationIndex;
+  if (i >= heads[push.branch].count) return false;
+  uint index = listed[firstOfList(push.branch, push.grid * push.grid) + i];
+  cell = uvec2(index % push.grid, index / push.grid);
+  return true;
+}
+
 void main() {
-  uvec2 cell = gl_GlobalInvocationID.xy;
-  if (cell.x >= push.grid || cell.y >= push.grid) return;
-  ViewRecord view = layer_views[push.view];
-  vec2 film = (vec2(cell) + push.offset) / float(push.grid) * 2.0 - 1.0;
+  uvec2 cell;
+  if (!chooseCell(cell)) return;
+  ViewRecord view = emission_views[push.view];
+  vec2 film = filmOf(cell);
   EmissionRay emitted = emissionRay(view, film.x, film.y);
   vec3 flux = cellFlux(lights[push.light], view, film.x, film.y, 1.0 / float(push.grid * push.grid)) * push.band_weight;
   Ray ray = Ray(emitted.origin, emitted.dir);
@@ -273,32 +307,41 @@ void main() {
   Path path = Path(ray, flux, false, false, 0u, seed, push.wavelength_nm, kNowhere, 0u, kInTheOpen);
   vec3 none = vec3(0.0);
   PhotonAccount account = PhotonAccount(push.branch == 0u ? flux : none, none, none, none, none, none, none, none);
-  Flight flight = Flight(path, 0u, kOutcomeDeposited, 0u, false, 0, 0.0, ray.origin, none, none, account);
+  Flight flight = Flight(path, 0u, kOutcomeDeposited, 0u, false, false, 0, 0.0, ray.origin, none, none, account);
 
   Pictures generators = Pictures(0u, kGeneratorViews, kGeneratorLayers, push.generator_size);
   Pictures receivers = Pictures(kGeneratorViews, kReceiverViews, kReceiverLayers, push.receiver_size);
-  ivec3 texel = ivec3(ivec2((film * 0.5 + 0.5) * push.generator_size), push.view);
-  uvec2 seen = texelFetch(first_seen, texel, 0).xy;
+  uvec2 seen = firstSeen(film);
   Met met = Met(kFarAway, 0.0, 0.0, kNowhere, 0u);
   if (seen.x != 0u) met = walkToRay(ray, seen, vec3(0.0), 0.0);
   if (met.instance == kNowhere) flight.outcome = kOutcomeMissed;
   else if (isBlocker(met.instance)) flight.outcome = kOutcomeBlocked;
   flight.path.ended = flight.outcome != kOutcomeDeposited;
 
+  // Before the loop, which looks for the next surface even where no thread needs it: all that is met first bends light.
+  if (!kSceneHasPassable && !flight.path.ended) {
+    flight.last_distance = met.t;
+    meetGenerator(flight, met);
+  }
   // Surfaces of solids that others rule are no events.
-  for (uint i = 0u; i < 2u * max_events && !flight.path.ended; ++i) {
+  for (uint i = kSceneHasPassable ? 0u : 1u; i < 2u * max_events && !flight.path.ended; ++i) {
     if (i > 0u) met = meetNext(flight, generators, receivers);
     if (flight.path.ended) continue;
     flight.last_distance = met.t;
     if ((fetchInstance(met.instance).flags & kInstanceGenerates) != 0u) {
       meetGenerator(flight, met);
-    } else {
+    } else if (kSceneHasPassable) {
       meetReceiver(flight, met);
+    } else {
+      endOn(flight, met);
     }
   }
+  if (!kSceneHasPassable) arriveAtEnd(flight, met);
   if (!flight.path.ended) flight.outcome = kOutcomeBounceLimit;
   leaveToOthers(flight);
   uint index = cell.y * push.grid + cell.x;
   photons[index] = describe(flight, index);
   if (kAccounts) accounts[index] = flight.account;
+  // Where no way forks here, branches beyond have nothing to say.
+  if (kListed && push.is_last == 0u && flight.forks) addToList(push.branch + 1u, push.grid * push.grid, index);
 }

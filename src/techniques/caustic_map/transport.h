@@ -56,6 +56,11 @@ struct TransportSettings {
   float first_guess = 0.0F;  ///< of the paper's methods, m; 0: what is seen where the ray starts
   /// For the ledger (PhotonLedger::account): what stays on the way. Of no use without it, and it takes time.
   const gpu::Buffer* account = nullptr;
+  /// Of makeCellLists: follows only cells that have something to say, those whose light meets a generator first, and
+  /// of these in each branch those that the branch before leaves to it. The other photons are zeros, which is not
+  /// valid. All branches must be recorded one after the other, from 0 on, with these settings. Not with `account`, to
+  /// which all cells count.
+  const gpu::Buffer* cell_lists = nullptr;
   bool is_last = false;  ///< no branch beyond this one is followed: for the account
 };
 
@@ -64,6 +69,9 @@ class Transport {
  public:
   /// @throws ResourceError
   Transport(gpu::Device& device, const SceneBuffers& buffers);
+
+  /// For grids of so many cells along a side.
+  gpu::Buffer makeCellLists(std::uint32_t grid) const;
 
   /// Records one pass for a light and an emission view: a photon for each cell, row by row.
   /// @param lights   LightRecords
@@ -74,12 +82,16 @@ class Transport {
               std::uint32_t light, std::uint32_t view, const TransportSettings& settings, const PhotonBuffer& photons);
 
  private:
+  /// Makes the first branch's list.
+  void listCells(gpu::CommandRecorder& recorder, const LightPictures& pictures, const gpu::Buffer& lists,
+                 const TransportPush& push);
   const gpu::ComputePipeline& pipelineFor(const LightPictures& pictures, const TransportSettings& settings);
 
   gpu::Device& device_;
   const SceneBuffers& buffers_;
   std::map<std::vector<std::uint32_t>, gpu::ComputePipeline> pipelines_;  ///< by what they are compiled for
-  gpu::Buffer views_, no_account_;
+  gpu::ComputePipeline list_cells_;
+  gpu::Buffer views_, nothing_;  ///< the latter where something has to be bound
 };
 
 }  // namespace nephroid

@@ -49,6 +49,32 @@ NEPHROID_CONST uint kSearchMarch = 4u;
 NEPHROID_CONST uint kExitPlanes = 0u;
 NEPHROID_CONST uint kExitWyman = 1u;
 
+/// Branches that may be followed by lists of cells.
+NEPHROID_CONST uint kMostBranches = 16u;
+/// Cells of a list that a group of threads follows.
+NEPHROID_CONST uint kListGroup = 64u;
+/// Groups along one axis, which every device allows.
+NEPHROID_CONST uint kMostGroups = 32768u;
+
+struct CellListHead {
+  uint groups_x;  // of the pass that goes through the list
+  uint groups_y;
+  uint groups_z;
+  uint count;
+};
+
+/// Emission views: the faces of a cube at most.
+NEPHROID_CONST uint kMostEmissionViews = 6u;
+
+/// What it takes to find a place in a view's picture.
+struct PictureView {
+  vec4 clip_row_x;  // of ViewRecord
+  vec4 clip_row_y;
+  vec4 clip_row_w;
+  vec3 forward;
+  float extent;  // the picture's longer side: at distance 1, or in m if orthographic
+};
+
 struct TransportPush {
   uint grid;    // cells along a side of a view's grid
   uint light;   // in the table of lights

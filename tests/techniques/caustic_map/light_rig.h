@@ -49,7 +49,8 @@ class LightRig {
         inner_(device, buffers_, grid, viewCount(), layers),
         outer_(device, buffers_, grid, static_cast<std::uint32_t>(view_.views.size()), 2),
         photons_(device, grid * grid),
-        transport_(device, buffers_) {
+        transport_(device, buffers_),
+        cell_lists_(transport_.makeCellLists(grid)) {
     std::vector<std::size_t> all, generators, receivers;
     for (std::size_t i = 0; i < buffers_.draws().size(); ++i) {
       all.push_back(i);
@@ -70,10 +71,19 @@ class LightRig {
     recorder_.begin();
     transport_.record(recorder_, pictures(), lights_, 0, view, settings, photons_);
     recorder_.submit();
-    Flown flown;
-    flown.photons = readPhotons(device_, photons_);
-    for (const Photon& p : flown.photons) ++flown.outcomes[Flown::outcomeOf(p)];
-    return flown;
+    return read();
+  }
+
+  /// Likewise, by lists of cells, after the branches before.
+  Flown flyListed(TransportSettings settings, std::uint32_t view = 0) {
+    settings.grid = grid_;
+    settings.cell_lists = &cell_lists_;
+    const std::uint32_t branch = settings.branch;
+    recorder_.begin();
+    for (settings.branch = 0; settings.branch <= branch; ++settings.branch)
+      transport_.record(recorder_, pictures(), lights_, 0, view, settings, photons_);
+    recorder_.submit();
+    return read();
   }
 
   /// Of all views and of branches 0 to `last`.
@@ -131,6 +141,13 @@ class LightRig {
     explicit Recorder(gpu::Device& device) : gpu::CommandRecorder(device) { begin(); }
   };
 
+  Flown read() {
+    Flown flown;
+    flown.photons = readPhotons(device_, photons_);
+    for (const Photon& p : flown.photons) ++flown.outcomes[Flown::outcomeOf(p)];
+    return flown;
+  }
+
   gpu::Device& device_;
   const SceneData& scene_;
   std::uint32_t grid_;
@@ -141,6 +158,7 @@ class LightRig {
   SurfaceLayers first_, inner_, outer_;
   PhotonBuffer photons_;
   Transport transport_;
+  gpu::Buffer cell_lists_;
   gpu::Buffer lights_;
 };
 

@@ -1,6 +1,7 @@
 #include "techniques/caustic_map/transport.h"
 
 #include <cmath>
+#include <cstring>
 #include <optional>
 
 #include "core/optics/fresnel.shared.h"
@@ -255,6 +256,28 @@ TEST_F(TransportTest, WhatLiesInWaterBelongsToOneBranch) {
     const Flown flown = rig.fly({.branch = branch});
     EXPECT_EQ(flown.fluxAfterGenerators().y, 0.0) << branch;
     EXPECT_EQ(flown.outcomes.count(kOutcomeDeposited), 0U) << branch;
+  }
+}
+
+TEST_F(TransportTest, ListsOfCellsLeaveOutNothing) {
+  // A ball and a black box: of the cells some meet glass, some what blocks, some nothing.
+  SceneData scene = test::makeBallScene(test::makeGlass(1.5F), 64);
+  test::addObject(scene, makeBox("blocker", dvec3(0.5, 2.5, -1), dvec3(1.5, 2.6, 1)), test::makeDiffuse(vec3(0.0F)));
+  scene.lights.push_back(test::makeSun(vec3(0, -1, 0), vec3(1.0F)));
+  LightRig rig(device(), scene);
+  for (std::uint32_t branch = 0; branch <= 3; ++branch) {
+    const Flown all = rig.fly({.branch = branch}), listed = rig.flyListed({.branch = branch});
+    int valid = 0;
+    ASSERT_EQ(all.photons.size(), listed.photons.size());
+    for (std::size_t i = 0; i < all.photons.size(); ++i) {
+      const Photon &a = all.photons[i], &b = listed.photons[i];
+      ASSERT_EQ(hasPhotonFlag(a, kPhotonValid), hasPhotonFlag(b, kPhotonValid)) << branch << ' ' << i;
+      if (!hasPhotonFlag(a, kPhotonValid)) continue;
+      ++valid;
+      ASSERT_EQ(std::memcmp(&a, &b, sizeof(Photon)), 0) << branch << ' ' << i;
+    }
+    EXPECT_GT(valid, branch == 2 ? 0 : 100) << branch;
+    EXPECT_LT(valid, int{kGrid * kGrid}) << branch;
   }
 }
 
