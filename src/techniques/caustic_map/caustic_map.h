@@ -96,7 +96,7 @@ class CausticMap : public RealtimeTechnique {
   Bounds generator_bounds_, scene_bounds_;
   std::unique_ptr<LightViews> lights_;
   Transport transport_;
-  gpu::Buffer cell_lists_;
+  CellLists cell_lists_;
   std::vector<Band> bands_;                      ///< one for all where nothing disperses light
   PhotonBuffer photons_;                         ///< of what is not kept
   std::unique_ptr<PixelDeposit> pixel_deposit_;  ///< where pixels are deposited into

@@ -46,9 +46,14 @@ layout(set = 0, binding = 18) uniform sampler2DArray receiver_depths;
 
 layout(scalar, set = 0, binding = 15) writeonly buffer Accounts { PhotonAccount accounts[]; };
 
+layout(scalar, set = 0, binding = 20) buffer Forks { Fork forks[]; };
+layout(scalar, set = 0, binding = 21) buffer ForkInteriors { Interior fork_interiors[]; };
+
 /// A photon on its way.
 struct Flight {
   Path path;
+  uint cell;
+  uint turn;  // of the loop that it goes on in
   uint chain;
   uint outcome;
   uint chances;         // to leave what it is inside of, that it passed
@@ -127,6 +132,44 @@ void accountFor(inout Flight flight, Encounter e, SurfaceOptics optics, Scattere
   else flight.account.other_way += flux * choice.not_followed;
 }
 
+int countSolids(Interior interior) {
+  uvec4 listed = min(interior.solids, uvec4(1u));
+  return int(listed.x + listed.y + listed.z + listed.w);
+}
+
+/// Of a surface: 1 if it bounds a solid that what enters must leave.
+int closedBy(uint instance) { return (fetchInstance(instance).flags & kInstanceClosed) != 0u ? 1 : 0; }
+
+/// Keeps the flight for the next branch, as it goes on if it does not leave here.
+void keepFork(inout Flight flight, Encounter e, Way reflected) {
+  Path other = flight.path;
+  take(other, reflected, e.surface, e.crossing, false);
+  // Nothing comes of it.
+  if (other.ended) flight.forks = false;
+  if (!flight.forks) return;
+  int solids = countSolids(other.interior) - countSolids(flight.path.interior);
+  forks[flight.cell] = Fork(other.ray.origin, other.instance, other.ray.dir, other.triangle, other.throughput,
+                            hashChain(flight.chain, 2u * other.instance), other.events, flight.turn, other.seed,
+                            flight.closed + closedBy(other.instance) * solids);
+  fork_interiors[flight.cell] = other.interior;
+}
+
+/// Takes up what the branch before has kept.
+void resume(inout Flight flight) {
+  Fork fork = forks[flight.cell];
+  flight.path.ray = Ray(fork.origin, fork.dir);
+  flight.path.throughput = fork.flux;
+  flight.path.events = fork.events;
+  flight.path.seed = fork.seed;
+  flight.path.instance = fork.instance;
+  flight.path.triangle = fork.triangle;
+  flight.path.interior = fork_interiors[flight.cell];
+  flight.chain = fork.chain;
+  flight.turn = fork.turn + 1u;
+  flight.chances = push.branch - 1u;
+  flight.closed = fork.closed;
+}
+
 /// Refracts or reflects the flight at a surface.
 void bend(inout Flight flight, Met met) {
   uint events = flight.path.events;
@@ -152,22 +195,17 @@ void bend(inout Flight flight, Met met) {
   flight.from = flight.path.ray.dir;
   Choice choice = chooseWay(reflected, transmitted, events, e.crossing.is_solid && !e.crossing.entering, flight);
   if (kAccounts) accountFor(flight, e, optics, scattered, reflected, transmitted, choice);
+  if (kListed && push.branch > 0u && push.is_last == 0u && choice.is_chance && flight.forks) keepFork(flight, e, reflected);
   flight.chain = hashChain(flight.chain, 2u * met.instance + (choice.way.through ? 1u : 0u));
   take(flight.path, choice.way, e.surface, e.crossing, false);
   if (largest(abs(flight.path.throughput)) <= 0.0) flight.outcome = events == 0u ? kOutcomeNoWay : kOutcomeAbsorbed;
   else if (flight.path.ended) flight.outcome = flight.path.events >= max_events ? kOutcomeBounceLimit : kOutcomeInterior;
 }
 
-int countSolids(Interior interior) {
-  uvec4 listed = min(interior.solids, uvec4(1u));
-  return int(listed.x + listed.y + listed.z + listed.w);
-}
-
 void meetGenerator(inout Flight flight, Met met) {
   int solids = countSolids(flight.path.interior);
   bend(flight, met);
-  bool is_closed = (fetchInstance(met.instance).flags & kInstanceClosed) != 0u;
-  flight.closed += is_closed ? countSolids(flight.path.interior) - solids : 0;
+  flight.closed += closedBy(met.instance) * (countSolids(flight.path.interior) - solids);
 }
 
 /// Ends the flight on a surface that no light passes; arriveAtEnd is to follow.
@@ -231,9 +269,7 @@ Met meetNext(inout Flight flight, Pictures generators, Pictures receivers) {
   t_end = leaveBox(ray, push.scene_lower, push.scene_upper);
   Met receiver;
   if (kSearch == kSearchPlanes) {
-    // A cell that the branch before has left to this one meets no receiver before their ways part.
-    bool has_forked = !kListed || kSceneHasPassable || flight.chances + 1u >= push.branch;
-    receiver = meetLayers(ray, t_end, has_forked ? met.t : -kFarAway, start, receivers, receiver_seen, receiver_surfaces, receiver_depths,
+    receiver = meetLayers(ray, t_end, met.t, start, receivers, receiver_seen, receiver_surfaces, receiver_depths,
                           push.receiver_iterations, hidden_receiver);
     flight.place = ray.origin + receiver.t * ray.dir;
   } else {
@@ -303,11 +339,12 @@ void main() {
   EmissionRay emitted = emissionRay(view, film.x, film.y);
   vec3 flux = cellFlux(lights[push.light], view, film.x, film.y, 1.0 / float(push.grid * push.grid)) * push.band_weight;
   Ray ray = Ray(emitted.origin, emitted.dir);
-  uint seed = hashChain(push.seed, cell.y * push.grid + cell.x);
+  uint index = cell.y * push.grid + cell.x;
+  uint seed = hashChain(push.seed, index);
   Path path = Path(ray, flux, false, false, 0u, seed, push.wavelength_nm, kNowhere, 0u, kInTheOpen);
   vec3 none = vec3(0.0);
   PhotonAccount account = PhotonAccount(push.branch == 0u ? flux : none, none, none, none, none, none, none, none);
-  Flight flight = Flight(path, 0u, kOutcomeDeposited, 0u, false, false, 0, 0.0, ray.origin, none, none, account);
+  Flight flight = Flight(path, index, 0u, 0u, kOutcomeDeposited, 0u, false, false, 0, 0.0, ray.origin, none, none, account);
 
   Pictures generators = Pictures(0u, kGeneratorViews, kGeneratorLayers, push.generator_size);
   Pictures receivers = Pictures(kGeneratorViews, kReceiverViews, kReceiverLayers, push.receiver_size);
@@ -318,14 +355,17 @@ void main() {
   else if (isBlocker(met.instance)) flight.outcome = kOutcomeBlocked;
   flight.path.ended = flight.outcome != kOutcomeDeposited;
 
+  bool resumes = kListed && push.branch > 1u;
   // Before the loop, which looks for the next surface even where no thread needs it: all that is met first bends light.
-  if (!kSceneHasPassable && !flight.path.ended) {
+  if (!kSceneHasPassable && !flight.path.ended && !resumes) {
     flight.last_distance = met.t;
     meetGenerator(flight, met);
   }
+  flight.turn = kSceneHasPassable ? 0u : 1u;
+  if (resumes) resume(flight);
   // Surfaces of solids that others rule are no events.
-  for (uint i = kSceneHasPassable ? 0u : 1u; i < 2u * max_events && !flight.path.ended; ++i) {
-    if (i > 0u) met = meetNext(flight, generators, receivers);
+  for (; flight.turn < 2u * max_events && !flight.path.ended; ++flight.turn) {
+    if (flight.turn > 0u) met = meetNext(flight, generators, receivers);
     if (flight.path.ended) continue;
     flight.last_distance = met.t;
     if ((fetchInstance(met.instance).flags & kInstanceGenerates) != 0u) {
@@ -339,7 +379,6 @@ void main() {
   if (!kSceneHasPassable) arriveAtEnd(flight, met);
   if (!flight.path.ended) flight.outcome = kOutcomeBounceLimit;
   leaveToOthers(flight);
-  uint index = cell.y * push.grid + cell.x;
   photons[index] = describe(flight, index);
   if (kAccounts) accounts[index] = flight.account;
   // Where no way forks here, branches beyond have nothing to say.

@@ -76,18 +76,22 @@ const gpu::ComputePipeline& Transport::pipelineFor(const LightPictures& pictures
       device_,
       {.shader = shaders::transport_comp,
        .bindings = SceneBuffers::bindings({kTable, kTable, kTexture, kTexture, kTexture, kTexture, kTexture, kTable,
-                                           kTable, kTexture, kTexture, kTexture, kTable}),
+                                           kTable, kTexture, kTexture, kTexture, kTable, kTable, kTable}),
        .push_bytes = sizeof(TransportPush),
        .constants = std::move(constants)},
       "transport");
   return pipelines_.emplace(key, std::move(pipeline)).first->second;
 }
 
-gpu::Buffer Transport::makeCellLists(std::uint32_t grid) const {
+CellLists Transport::makeCellLists(std::uint32_t grid) const {
   const VkDeviceSize cells = VkDeviceSize{grid} * grid;
-  return {device_, sizeof(kNoCells) + 2 * cells * sizeof(std::uint32_t),
-          VK_BUFFER_USAGE_STORAGE_BUFFER_BIT | VK_BUFFER_USAGE_INDIRECT_BUFFER_BIT, gpu::MemoryIntent::kDevice,
-          "lists of cells"};
+  const auto make = [&](VkDeviceSize bytes, VkBufferUsageFlags usage, const char* name) {
+    return gpu::Buffer(device_, bytes, VK_BUFFER_USAGE_STORAGE_BUFFER_BIT | usage, gpu::MemoryIntent::kDevice, name);
+  };
+  return {.cells = make(sizeof(kNoCells) + 2 * cells * sizeof(std::uint32_t), VK_BUFFER_USAGE_INDIRECT_BUFFER_BIT,
+                        "lists of cells"),
+          .forks = make(cells * sizeof(Fork), 0, "forks"),
+          .interiors = make(cells * kInteriorWords * sizeof(std::uint32_t), 0, "insides of forks")};
 }
 
 void Transport::listCells(gpu::CommandRecorder& recorder, const LightPictures& pictures, const gpu::Buffer& lists,
@@ -131,7 +135,9 @@ void Transport::record(gpu::CommandRecorder& recorder, const LightPictures& pict
                            .scene_upper = pictures.scene_bounds.upper};
   const gpu::Buffer& target = photons.chunks()[0].buffer;
   const gpu::Buffer& account = settings.account != nullptr ? *settings.account : nothing_;
-  const gpu::Buffer& lists = settings.cell_lists != nullptr ? *settings.cell_lists : nothing_;
+  const gpu::Buffer& lists = settings.cell_lists != nullptr ? settings.cell_lists->cells : nothing_;
+  const gpu::Buffer& forks = settings.cell_lists != nullptr ? settings.cell_lists->forks : nothing_;
+  const gpu::Buffer& interiors = settings.cell_lists != nullptr ? settings.cell_lists->interiors : nothing_;
   if (settings.cell_lists != nullptr) {
     NEPHROID_ASSERT_EQ(settings.account, nullptr);
     NEPHROID_ASSERT_LT(settings.branch, kMostBranches);
@@ -140,7 +146,7 @@ void Transport::record(gpu::CommandRecorder& recorder, const LightPictures& pict
                   [&](PassCommands& commands) { commands.fill(target, 0); });
   }
   const gpu::ComputePipeline& pipeline = pipelineFor(pictures, settings);
-  const std::vector<Use> uses = buffers_.uses(
+  std::vector<Use> uses = buffers_.uses(
       Access::kComputeRead,
       {Use(views_, Access::kComputeRead), Use(lights, Access::kComputeRead),
        Use(pictures.first.seen(), Access::kComputeRead), Use(pictures.generators.seen(), Access::kComputeRead),
@@ -150,6 +156,10 @@ void Transport::record(gpu::CommandRecorder& recorder, const LightPictures& pict
        Use(target, Access::kComputeWrite), Use(account, Access::kComputeWrite),
        Use(buffers_.neighbours(), Access::kComputeRead),
        Use(lists, settings.cell_lists != nullptr ? Access::kDispatchWrite : Access::kComputeRead)});
+  if (settings.cell_lists != nullptr) {
+    uses.emplace_back(forks, Access::kComputeWrite);
+    uses.emplace_back(interiors, Access::kComputeWrite);
+  }
   recorder.pass("transport", uses, [&](PassCommands& commands) {
     const gpu::Sampler& nearest = buffers_.sampler();
     commands.bind(pipeline);
@@ -159,7 +169,7 @@ void Transport::record(gpu::CommandRecorder& recorder, const LightPictures& pict
          Bound(12, pictures.receivers.seen(), nearest), Bound(13, pictures.receivers.surfaces(), nearest),
          Bound(14, target), Bound(15, account), Bound(16, buffers_.neighbours(), nearest),
          Bound(17, pictures.generators.depths(), nearest), Bound(18, pictures.receivers.depths(), nearest),
-         Bound(19, lists)}));
+         Bound(19, lists), Bound(20, forks), Bound(21, interiors)}));
     commands.pushConstants(push);
     if (settings.cell_lists != nullptr) {
       commands.dispatchIndirect(lists, settings.branch * sizeof(CellListHead));

@@ -37,6 +37,8 @@ enum class Search : std::uint8_t {
 /// How light leaves what it has entered: exactly, or at the back face that Wyman's approximation finds.
 enum class Exit : std::uint8_t { kPlanes = kExitPlanes, kWyman = kExitWyman };
 
+struct CellLists;
+
 /// How light is followed.
 struct TransportSettings {
   std::uint32_t grid = 256;  ///< cells along a side of each of the emission's views
@@ -60,8 +62,13 @@ struct TransportSettings {
   /// of these in each branch those that the branch before leaves to it. The other photons are zeros, which is not
   /// valid. All branches must be recorded one after the other, from 0 on, with these settings. Not with `account`, to
   /// which all cells count.
-  const gpu::Buffer* cell_lists = nullptr;
+  const CellLists* cell_lists = nullptr;
   bool is_last = false;  ///< no branch beyond this one is followed: for the account
+};
+
+/// What branches leave to one another: cells, and flights where they fork.
+struct CellLists {
+  gpu::Buffer cells, forks, interiors;
 };
 
 /// Not thread-safe. Device and buffers must outlive it.
@@ -71,7 +78,7 @@ class Transport {
   Transport(gpu::Device& device, const SceneBuffers& buffers);
 
   /// For grids of so many cells along a side.
-  gpu::Buffer makeCellLists(std::uint32_t grid) const;
+  CellLists makeCellLists(std::uint32_t grid) const;
 
   /// Records one pass for a light and an emission view: a photon for each cell, row by row.
   /// @param lights   LightRecords

@@ -63,6 +63,21 @@ struct CellListHead {
   uint count;
 };
 
+/// A flight where its way forks, as the next branch takes it up; what it is inside of, an Interior, is kept apart.
+struct Fork {
+  vec3 origin;
+  uint instance;  // on which it starts
+  vec3 dir;
+  uint triangle;
+  vec3 flux;  // W
+  uint chain;
+  uint events;
+  uint turn;  // of the loop
+  uint seed;
+  int closed;
+};
+NEPHROID_CONST uint kInteriorWords = 12u;
+
 /// Emission views: the faces of a cube at most.
 NEPHROID_CONST uint kMostEmissionViews = 6u;
 

@@ -158,7 +158,7 @@ class LightRig {
   SurfaceLayers first_, inner_, outer_;
   PhotonBuffer photons_;
   Transport transport_;
-  gpu::Buffer cell_lists_;
+  CellLists cell_lists_;
   gpu::Buffer lights_;
 };
 
