@@ -1,8 +1,8 @@
 // Lists of the cells of an emission grid that have something to say in a branch, so that the others cost nothing.
 //
 // The order in a list differs between runs; each photon has its place in the grid all the same. Every list begins with
-// the number of groups of the pass that goes through it. Branch b reads its list while it writes that of b + 1: two halves
-// of the buffer serve all branches.
+// the number of groups of the pass that goes through it. Branch b reads its list while it writes that of b + 1: two
+// halves of the buffer serve all branches.
 //
 // The including shader gives the binding NEPHROID_CELL_LISTS_BINDING.
 #ifndef NEPHROID_CELL_LISTS_GLSL

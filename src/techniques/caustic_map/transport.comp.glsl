@@ -195,7 +195,8 @@ void bend(inout Flight flight, Met met) {
   flight.from = flight.path.ray.dir;
   Choice choice = chooseWay(reflected, transmitted, events, e.crossing.is_solid && !e.crossing.entering, flight);
   if (kAccounts) accountFor(flight, e, optics, scattered, reflected, transmitted, choice);
-  if (kListed && push.branch > 0u && push.is_last == 0u && choice.is_chance && flight.forks) keepFork(flight, e, reflected);
+  bool is_fork = choice.is_chance && flight.forks;
+  if (kListed && push.branch > 0u && push.is_last == 0u && is_fork) keepFork(flight, e, reflected);
   flight.chain = hashChain(flight.chain, 2u * met.instance + (choice.way.through ? 1u : 0u));
   take(flight.path, choice.way, e.surface, e.crossing, false);
   if (largest(abs(flight.path.throughput)) <= 0.0) flight.outcome = events == 0u ? kOutcomeNoWay : kOutcomeAbsorbed;
@@ -344,7 +345,8 @@ void main() {
   Path path = Path(ray, flux, false, false, 0u, seed, push.wavelength_nm, kNowhere, 0u, kInTheOpen);
   vec3 none = vec3(0.0);
   PhotonAccount account = PhotonAccount(push.branch == 0u ? flux : none, none, none, none, none, none, none, none);
-  Flight flight = Flight(path, index, 0u, 0u, kOutcomeDeposited, 0u, false, false, 0, 0.0, ray.origin, none, none, account);
+  Flight flight =
+      Flight(path, index, 0u, 0u, kOutcomeDeposited, 0u, false, false, 0, 0.0, ray.origin, none, none, account);
 
   Pictures generators = Pictures(0u, kGeneratorViews, kGeneratorLayers, push.generator_size);
   Pictures receivers = Pictures(kGeneratorViews, kReceiverViews, kReceiverLayers, push.receiver_size);
