@@ -12,8 +12,7 @@ namespace {
 /// Groups of threads that go through the list of what is left.
 constexpr std::uint32_t kRestGroups = 256;
 
-gpu::ComputeDesc describe(gpu::Spirv shader, Reconstruction reconstruction, std::uint32_t views,
-                                  bool directions) {
+gpu::ComputeDesc describe(gpu::Spirv shader, Reconstruction reconstruction, std::uint32_t views, bool directions) {
   return {
       .shader = shader,
       .bindings = {{0, kTexels}, {1, kTable}, {2, kTexture}, {3, kStorage}, {4, kStorage}, {5, kTable}, {6, kTable}},

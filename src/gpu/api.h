@@ -56,7 +56,7 @@ namespace nephroid::gpu {
   X(CmdCopyBufferToImage)               \
   X(CmdCopyImageToBuffer)               \
   X(CmdDispatch)                        \
-  X(CmdDispatchIndirect)                        \
+  X(CmdDispatchIndirect)                \
   X(CmdDraw)                            \
   X(CmdDrawIndexed)                     \
   X(CmdEndRendering)                    \

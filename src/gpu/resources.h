@@ -27,8 +27,8 @@ class Buffer {
  public:
   Buffer() = default;
   /// @param size   bytes, > 0
-  /// @param usage  VK_BUFFER_USAGE_…; transfers both ways are always allowed. As a uniform texel buffer shaders fetch it
-  ///               in texels of four words, which some devices do many times as fast as word by word
+  /// @param usage  VK_BUFFER_USAGE_…; transfers both ways are always allowed. Shaders fetch uniform texel buffers in
+  ///               texels of four words, which some devices do many times as fast as word by word
   /// @param name   for messages and captures
   /// @throws ResourceError
   Buffer(Device& device, VkDeviceSize size, VkBufferUsageFlags usage, MemoryIntent intent, std::string_view name);

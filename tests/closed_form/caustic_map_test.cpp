@@ -40,7 +40,9 @@ PlanePicture drawPlane(const SceneData& scene, const PlaneView& view, const std:
   return renderPlane(scene, view, "caustic-map", {.samples = 1}, all);
 }
 
-void report(const std::string& name, double value) { ::testing::Test::RecordProperty(name, fmt::format("{:.6f}", value)); }
+void report(const std::string& name, double value) {
+  ::testing::Test::RecordProperty(name, fmt::format("{:.6f}", value));
+}
 
 TEST_F(CausticMapClosedForm, ASlabShiftsAndDims) {
   for (const double angle_deg : {0.0, 30.0, 60.0}) {
