@@ -13,9 +13,9 @@ namespace nephroid {
 class FluxMap {
  public:
   FluxMap() = default;
-  /// @param width, height  texels
-  /// @param views       pictures, one behind the other
-  /// @param directions  also keeps where the light comes from
+  /// @param width, height  texels of each picture
+  /// @param views          pictures, one behind the other
+  /// @param directions     also keeps where the light comes from
   /// @throws ResourceError
   FluxMap(gpu::Device& device, std::uint32_t width, std::uint32_t height, std::uint32_t views, bool directions);
 

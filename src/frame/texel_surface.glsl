@@ -24,7 +24,7 @@ Projection projectionOf(uint v) {
   return p;
 }
 
-/// On which side of a picture's middle and how far, in texels from its corner.
+/// Of a place on a view's picture, in texels from its corner.
 struct OnPicture {
   vec2 texels;
   float w;  // > 0: before the eye
@@ -42,7 +42,7 @@ bool isOnPicture(OnPicture on, vec2 size) {
   return on.w > 0.0 && all(greaterThanEqual(on.texels, vec2(0.0))) && all(lessThan(on.texels, size));
 }
 
-/// What a texel shows, seen along the views[0].
+/// What a texel shows.
 struct TexelSurface {
   vec3 position;     // world; far away where nothing is seen
   vec3 lit_normal;   // unit, on the side that faces the view's eye
