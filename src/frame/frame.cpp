@@ -16,7 +16,6 @@
 #include "nephroid/error.h"
 #include "shaders/frame/geometry_layer.comp.h"
 #include "shaders/frame/passable_seen.frag.h"
-#include "shaders/frame/shade.comp.h"
 #include "shaders/frame/tint.frag.h"
 #include "shaders/frame/visibility.frag.h"
 #include "shaders/frame/visibility.vert.h"
@@ -54,16 +53,8 @@ struct RealtimeFrame::PassablePush {
 
 /// What is compiled, once the scene is known.
 struct RealtimeFrame::Passes {
-  /// @param lights  constants of shade.comp: what shines, also what the camera sees of it
-  Passes(gpu::Device& device, const SceneTraits& traits, const std::vector<gpu::Constant>& lights)
+  Passes(gpu::Device& device, const SceneTraits& traits)
       : visibility(draw(device, traits, shaders::visibility_frag, {.format = kSeenFormat}, true, "visibility")),
-        shade(device,
-              {.shader = shaders::shade_comp,
-               .bindings = SceneBuffers::bindings({kTexture, kTexture, kTexture, kTable, kTable, kTexture, kTexture,
-                                                   kTexture, kTexture, kStorage, kStorage}),
-               .push_bytes = sizeof(SamplePush),
-               .constants = join(traits.constants(), lights)},
-              "shade"),
         geometry_layer(device,
                        {.shader = shaders::geometry_layer_comp,
                         .bindings = SceneBuffers::bindings({kTable, kTexture, kStorage}),
@@ -92,7 +83,7 @@ struct RealtimeFrame::Passes {
   }
 
   gpu::GraphicsPipeline visibility, passable, tint;
-  gpu::ComputePipeline shade, geometry_layer;
+  gpu::ComputePipeline geometry_layer;
 };
 
 RealtimeFrame::RealtimeFrame(gpu::Device& device, const SceneData& scene, const Camera& camera,
@@ -128,9 +119,6 @@ void RealtimeFrame::makeTargets() {
   constexpr VkImageUsageFlags kDrawn = VK_IMAGE_USAGE_COLOR_ATTACHMENT_BIT | VK_IMAGE_USAGE_SAMPLED_BIT;
   seen_ = makePixels(device_, settings_, kSeenFormat, kDrawn, "seen");
   depth_ = makePixels(device_, settings_, kDepthFormat, VK_IMAGE_USAGE_DEPTH_STENCIL_ATTACHMENT_BIT, "depth");
-  constexpr VkImageUsageFlags kSummed = VK_IMAGE_USAGE_STORAGE_BIT | VK_IMAGE_USAGE_SAMPLED_BIT;
-  direct_ = makePixels(device_, settings_, kFloat4, kSummed, "direct");
-  emission_ = makePixels(device_, settings_, kFloat4, kSummed, "emission");
   raster_.reset();
   if (chooseRasteriser(settings_.rasteriser, device_, *buffers_, settings_.width, settings_.height) !=
       Rasteriser::kHardware)
@@ -180,7 +168,9 @@ void RealtimeFrame::makeCaustic() {
 void RealtimeFrame::makePasses() {
   lamps_compiled_ = lamp_count_ > 0;
   lights_compiled_ = light_grids_->traits();
-  passes_ = std::make_unique<Passes>(device_, buffers_->traits(), lightConstants());
+  if (!passes_) passes_ = std::make_unique<Passes>(device_, buffers_->traits());
+  const ShadePass::Inputs inputs{camera_view_, seen_, tint_, lamps_, environment_, environment_sampler_, *light_grids_};
+  shade_ = std::make_unique<ShadePass>(device_, *buffers_, inputs, lightConstants(), settings_.shading);
 }
 
 bool RealtimeFrame::lightsAreCompiled() const {
@@ -211,6 +201,7 @@ void RealtimeFrame::resize(int width, int height) {
   makeTargets();
   recorder_.submit();
   // What is compiled stays.
+  shade_->fitPicture(device_);
   if (specular_) specular_->fitPicture(device_);
   if (caustic_) caustic_->fitPicture(device_);
   if (display_) display_->resize(device_, seen_.desc().width, seen_.desc().height);
@@ -283,7 +274,7 @@ void RealtimeFrame::render(std::uint32_t sample) {
   recordVisibility(film_offset, sample, false);
   if (buffers_->traits().passable) recordTint(film_offset, sample);
   const SamplePush push = samplePush(film_offset, sample);
-  recordShade(push);
+  shade_->record(recorder_, push);
   if (specular_) specular_->record(recorder_, push);
   if (technique_) recordCaustic(sample);
   recorder_.submit();
@@ -363,28 +354,6 @@ SamplePush RealtimeFrame::samplePush(vec2 film_offset, std::uint32_t frame) cons
           .sin_rotation = std::sin(rotation)};
 }
 
-void RealtimeFrame::recordShade(const SamplePush& push) {
-  std::vector<Use> uses = buffers_->uses(
-      Access::kComputeRead,
-      {Use(camera_view_, Access::kComputeRead), Use(seen_, Access::kComputeRead), Use(tint_, Access::kComputeRead),
-       Use(lamps_, Access::kComputeRead), Use(environment_, Access::kComputeRead), Use(direct_, Access::kComputeWrite),
-       Use(emission_, Access::kComputeWrite)});
-  const std::vector<Use> grids = light_grids_->uses();
-  uses.insert(uses.end(), grids.begin(), grids.end());
-  recorder_.pass("shade", uses, [&](PassCommands& commands) {
-    const gpu::Sampler& nearest = buffers_->sampler();
-    commands.bind(passes_->shade);
-    std::vector<Bound> bound = buffers_->bound(
-        {Bound(11, camera_view_), Bound(12, seen_, nearest), Bound(13, tint_, nearest), Bound(14, lamps_, nearest),
-         Bound(15, environment_, environment_sampler_), Bound(16, direct_), Bound(17, emission_)});
-    const std::vector<Bound> of_lights = light_grids_->bound(SceneBuffers::kBindings);
-    bound.insert(bound.end(), of_lights.begin(), of_lights.end());
-    commands.bindResources(bound);
-    commands.pushConstants(push);
-    commands.dispatch(gpu::groupsOf(seen_.desc().width, kPixelGroup), gpu::groupsOf(seen_.desc().height, kPixelGroup));
-  });
-}
-
 void RealtimeFrame::recordCaustic(std::uint32_t frame) {
   clearIrradiance(recorder_, caustic_->target());
   const PixelSurfaces surfaces = PixelSurfaces::ofFrame(camera_view_, seen_, nothing_, buffers_->sampler());
@@ -393,8 +362,8 @@ void RealtimeFrame::recordCaustic(std::uint32_t frame) {
 }
 
 const gpu::Image* RealtimeFrame::sumOf(const std::string& layer) const {
-  if (layer == "direct") return &direct_;
-  if (layer == "emission") return &emission_;
+  if (layer == "direct") return &shade_->direct();
+  if (layer == "emission") return &shade_->emission();
   if (layer == "specular") return specular_ ? &specular_->sum() : nullptr;
   if (layer == "caustic") return caustic_ ? &caustic_->radianceSum() : nullptr;
   if (layer == "irradiance_caustic") return caustic_ ? &caustic_->irradianceSum() : nullptr;
@@ -416,7 +385,7 @@ const gpu::Image& RealtimeFrame::compose(std::span<const std::string> layers,
     if (const gpu::Image* sum = sumOf(layer)) images.push_back(sum);
   // Of layers that are not made, the sum is black.
   const float weight = images.empty() ? 0.0F : 1.0F / static_cast<float>(std::max(samples_, 1U));
-  if (images.empty()) images.push_back(&direct_);
+  if (images.empty()) images.push_back(&shade_->direct());
   recorder_.begin();
   display_->record(recorder_, images, weight, display);
   recorder_.submit();

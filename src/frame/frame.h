@@ -21,6 +21,7 @@
 #include "frame/realtime_technique.h"
 #include "frame/sample_push.shared.h"
 #include "frame/scene_buffers.h"
+#include "frame/shade_pass.h"
 #include "frame/specular_pass.h"
 #include "gpu/commands.h"
 
@@ -37,6 +38,7 @@ struct FrameSettings {
       4;  ///< pixels between those from which mirrors and glass are followed, 1 to 4; 1: all
   std::uint32_t seed = 0;
   Rasteriser rasteriser = Rasteriser::kAuto;
+  Shading shading = Shading::kAuto;
 };
 
 /// Not thread-safe. Device and scene must outlive it. The scene's owner may edit it between frames if he tells by
@@ -107,7 +109,6 @@ class RealtimeFrame {
   void recordVisibility(vec2 film_offset, std::uint32_t frame, bool geometry_only);
   void recordTint(vec2 film_offset, std::uint32_t frame);
   SamplePush samplePush(vec2 film_offset, std::uint32_t frame) const;
-  void recordShade(const SamplePush& push);
   void recordCaustic(std::uint32_t frame);
   /// @param draws  of the scene, by index
   void drawScene(gpu::PassCommands& commands, const std::vector<std::size_t>& draws);
@@ -125,6 +126,7 @@ class RealtimeFrame {
   std::unique_ptr<Passes> passes_;
   std::unique_ptr<ComputeRaster> raster_;         ///< where it is used
   std::unique_ptr<TriangleTree> tree_;            ///< null: nothing is specular
+  std::unique_ptr<ShadePass> shade_;
   std::unique_ptr<SpecularPass> specular_;        ///< null: nothing is specular
   std::unique_ptr<RealtimeTechnique> technique_;  ///< null: none, or it has nothing to draw
   std::unique_ptr<CausticPass> caustic_;          ///< where there is one
@@ -133,7 +135,7 @@ class RealtimeFrame {
   ViewRecord view_{};
   DrawSplit split_;
   gpu::Buffer camera_view_;
-  gpu::Image seen_, depth_, tint_, direct_, emission_, environment_, lamps_, nothing_;
+  gpu::Image seen_, depth_, tint_, environment_, lamps_, nothing_;
   gpu::Sampler environment_sampler_;
   std::uint32_t lamp_count_ = 0;
   bool lamps_compiled_ = false;

@@ -48,6 +48,7 @@ NEPHROID_CONST uint kInstancePassable = 4u;    // its material may let light pas
 NEPHROID_CONST uint kInstanceGenerates = 8u;   // casts caustics
 NEPHROID_CONST uint kInstanceClosed = 16u;     // what enters it must leave it; known of scenes with generators
 NEPHROID_CONST uint kInstanceReceives = 32u;   // catches caustics
+NEPHROID_CONST uint kInstanceIsLit = 64u;      // shines, or has a lobe of class D; textures may give it either
 
 /// A material; see scene/scene_data.h for the terms. Indices of textures are kNowhere where there is none.
 struct MaterialRecord {

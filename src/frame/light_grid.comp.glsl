@@ -10,7 +10,8 @@
 
 layout(local_size_x = 64) in;
 layout(set = 0, binding = 7) uniform usampler2D view_table;
-// By light; in each, fine cells view by view, then coarse cells.
+// By light; in each, fine cells view by view, then coarse cells, then marks of the coarse cells in whose fine ones there
+// is something.
 layout(set = 0, binding = 8, r32ui) uniform uimage2DArray heads;
 layout(set = 0, binding = 9, rgba32ui) writeonly uniform uimage2D nodes;
 layout(scalar, set = 0, binding = 10) buffer Counters { uint node_counts[]; };  // by light
@@ -30,20 +31,25 @@ layout(push_constant, scalar) uniform Push {
   vec4 source;  // a place of the light, or with w = 0 the direction to it
 };
 
-/// More cells than this, and a triangle is a large one.
+/// More cells than this in its box, and a triangle is a large one; unless it is thin and leans, and so covers few of them.
 const int kLargeCells = 128;
+/// Cells in the box for each that is covered by a thin one.
+const float kThin = 4.0;
+/// Of the box, in which one thread looks for those that are covered.
+const int kMostCells = 2048;
 /// What is this near to the plane of the light, relative to the farthest corner, is cut off: it would be projected to
 /// infinity, and no point that could be shadowed lies between.
 const float kCutShare = 1e-6;
 /// Widening of triangles, in cells: the rounding of projected corners, of which cells know nothing.
 const float kMargin = 0.01;
 
+ivec3 placeOfHead(uint list) { return ivec3(list & ((1u << kHeadsShift) - 1u), list >> kHeadsShift, light); }
+
 void addNode(uint list, GridNode node) {
   uint place = atomicAdd(node_counts[light], 1u);
   if (place >= node_capacity) return;  // counted: the lists are built again with room for all
   place += first_node;
-  ivec3 head = ivec3(list & ((1u << kHeadsShift) - 1u), list >> kHeadsShift, light);
-  node.next = imageAtomicExchange(heads, head, place);
+  node.next = imageAtomicExchange(heads, placeOfHead(list), place);
   imageStore(nodes, texelOf(3u * place), uvec4(floatBitsToUint(node.a), node.next));
   imageStore(nodes, texelOf(3u * place + 1u), uvec4(floatBitsToUint(node.b), node.instance));
   imageStore(nodes, texelOf(3u * place + 2u), uvec4(floatBitsToUint(node.c), node.triangle));
@@ -105,21 +111,38 @@ bool overlaps(Outline o, float orientation, vec2 cell) {
   return true;
 }
 
-float orientationOf(Outline o) {
+/// Twice its area, in cells, negative if it turns the other way.
+float doubleAreaOf(Outline o) {
   float area = 0.0;
   for (int k = 0; k < o.count; ++k) {
     vec2 a = o.corners[k] - o.corners[0], b = o.corners[(k + 1) % o.count] - o.corners[0];
     area += a.x * b.y - a.y * b.x;
   }
-  return area < 0.0 ? -1.0 : 1.0;
+  return area;
+}
+
+/// @param extent  of its box, in cells
+bool isLarge(Outline o, ivec2 extent) {
+  int box = extent.x * extent.y;
+  // A line crosses as many cells as it goes along both sides.
+  float covered = 0.5 * abs(doubleAreaOf(o)) + float(extent.x + extent.y);
+  return box > kLargeCells && (kThin * covered > float(box) || box > kMostCells);
 }
 
 /// Adds a triangle to the cells that it covers of a grid of a view, whose lists begin at `first_list`.
-void addToCells(Outline o, GridNode node, uint first_list, int size, ivec2 first, ivec2 last) {
-  float orientation = orientationOf(o);
-  for (int y = first.y; y <= last.y; ++y)
-    for (int x = first.x; x <= last.x; ++x)
-      if (overlaps(o, orientation, vec2(x, y))) addNode(first_list + uint(y * size + x), node);
+/// @param first_mark  of the view's; kNowhere: the cells are the coarse ones
+void addToCells(Outline o, GridNode node, uint first_list, uint first_mark, int size, ivec2 first, ivec2 last) {
+  float orientation = doubleAreaOf(o) < 0.0 ? -1.0 : 1.0;
+  for (int y = first.y; y <= last.y; ++y) {
+    for (int x = first.x; x <= last.x; ++x) {
+      if (!overlaps(o, orientation, vec2(x, y))) continue;
+      addNode(first_list + uint(y * size + x), node);
+      ivec2 coarse = ivec2(x, y) / int(kCoarseCell);
+      uint mark = first_mark + uint(coarse.y * (size / int(kCoarseCell)) + coarse.x);
+      // All write the same.
+      if (first_mark != kNowhere) imageAtomicMin(heads, placeOfHead(mark), 0u);
+    }
+  }
 }
 
 void addToView(uint view, GridNode node) {
@@ -135,16 +158,19 @@ void addToView(uint view, GridNode node) {
   ivec2 first = ivec2(clamp(floor(lower - kMargin), vec2(0.0), vec2(float(size - 1))));
   ivec2 last = ivec2(clamp(floor(upper + kMargin), vec2(0.0), vec2(float(size - 1))));
   ivec2 extent = last - first + 1;
+  uint coarse_cells = (grid_size / kCoarseCell) * (grid_size / kCoarseCell);
   uint first_list = view * grid_size * grid_size;
-  if (extent.x * extent.y > kLargeCells) {
+  uint first_mark = view_count * (grid_size * grid_size + coarse_cells) + view * coarse_cells;
+  if (isLarge(o, extent)) {
     int coarse = int(kCoarseCell);
     for (int k = 0; k < o.count; ++k) o.corners[k] /= float(coarse);
     size /= coarse;
     first /= coarse;
     last /= coarse;
-    first_list = view_count * grid_size * grid_size + view * uint(size * size);
+    first_list = view_count * grid_size * grid_size + view * coarse_cells;
+    first_mark = kNowhere;
   }
-  addToCells(o, node, first_list, size, first, last);
+  addToCells(o, node, first_list, first_mark, size, first, last);
 }
 
 /// Does the whole scene lie on the light's side of the triangle? Then it shadows nothing: floors and walls mostly.

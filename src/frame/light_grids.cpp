@@ -30,7 +30,8 @@ struct GridPush {
 /// Heads of one light that has six views and stays.
 std::uint64_t headsOf(std::uint32_t grid_size) {
   const std::uint64_t size = std::uint64_t{kFinerIfStaying} * grid_size, fine = 6 * size * size;
-  return fine + fine / (std::uint64_t{kCoarseCell} * kCoarseCell);
+  // Coarse cells have a list and a mark each.
+  return fine + 2 * (fine / (std::uint64_t{kCoarseCell} * kCoarseCell));
 }
 
 void setGrid(LightRecord& light, const std::vector<ViewRecord>& views, std::uint32_t size) {
@@ -85,7 +86,7 @@ void LightGrids::makeHeads() {
   std::uint32_t triangles = 0;
   for (const SceneBuffers::Draw& draw : buffers_.draws()) triangles += draw.index_count / 3;
   Light unbuilt;
-  unbuilt.node_capacity = 2 * triangles + 16384;
+  unbuilt.node_capacity = 2 * triangles + 32768;
   lights_.assign(light_views_->count(), unbuilt);
 }
 

@@ -14,7 +14,7 @@ namespace {
 /// Streams of the sampler, one for each light; those of pixels and photons of other engines do not matter here.
 constexpr std::uint32_t kFirstStream = 0x11670000U;
 
-/// Of so many lights, or fewer, shaders have code for each.
+/// Of so many lights, or fewer, shaders have code for each (also frame/shade_blocks.comp.glsl).
 constexpr std::uint32_t kMostFewLights = 2;
 
 bool isMirrored(const Instance& instance) { return glm::determinant(mat3(instance.world_from_object)) < 0.0F; }
@@ -48,8 +48,10 @@ vec3 sampleSphere(const Bounds& scene, vec3 centre, vec2 u, float& pdf_solid_ang
 
 }  // namespace
 
+std::uint32_t LightTraits::fewCount() const { return count <= kMostFewLights ? count : 0; }
+
 std::vector<gpu::Constant> LightTraits::constants() const {
-  return {{12, count <= kMostFewLights ? count : 0}, {13, points}, {14, directionals}, {15, spots}, {16, surfaces}};
+  return {{12, fewCount()}, {13, points}, {14, directionals}, {15, spots}, {16, surfaces}};
 }
 
 bool LightTraits::cover(const LightTraits& others) const {

@@ -29,6 +29,8 @@ struct LightTraits {
   bool surfaces = false;  ///< points of something with a size
   std::uint32_t count = 0;
 
+  /// How many there are if they are so few that shaders have code for each, else 0.
+  std::uint32_t fewCount() const;
   /// Specialisation constants of frame/lights.glsl.
   std::vector<gpu::Constant> constants() const;
   /// Whether what was compiled for these serves for `others` too.

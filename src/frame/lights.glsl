@@ -114,6 +114,19 @@ bool hasEdges(GridNode node, RayTriangle hit) {
   return hit.u != 0.0 || isBefore(node.c, node.a);
 }
 
+ivec3 headOf(uint list, uint light) {
+  return ivec3(list & ((1u << kHeadsShift) - 1u), list >> kHeadsShift, light);
+}
+
+uint fetchHead(uint list, uint light_index) { return texelFetch(grid_heads, headOf(list, light_index), 0).x; }
+
+GridNode fetchNode(uint i) {
+  uvec4 a = texelFetch(grid_nodes, texelOf(3u * i), 0);
+  uvec4 b = texelFetch(grid_nodes, texelOf(3u * i + 1u), 0);
+  uvec4 c = texelFetch(grid_nodes, texelOf(3u * i + 2u), 0);
+  return GridNode(uintBitsToFloat(a.xyz), a.w, uintBitsToFloat(b.xyz), b.w, uintBitsToFloat(c.xyz), c.w);
+}
+
 /// @param heads  of the lists to walk through
 Shadow walkLists(uvec2 heads, Place place, Arriving light) {
   Shadow shadow = Shadow(uvec3(0u), false);
@@ -124,11 +137,7 @@ Shadow walkLists(uvec2 heads, Place place, Arriving light) {
   bool is_node = next != kNowhere;
   next = is_node ? next : 0u;
   do {
-    uvec4 a = texelFetch(grid_nodes, texelOf(3u * next), 0);
-    uvec4 b = texelFetch(grid_nodes, texelOf(3u * next + 1u), 0);
-    uvec4 c = texelFetch(grid_nodes, texelOf(3u * next + 2u), 0);
-    GridNode node =
-        GridNode(uintBitsToFloat(a.xyz), a.w, uintBitsToFloat(b.xyz), b.w, uintBitsToFloat(c.xyz), c.w);
+    GridNode node = fetchNode(next);
     bool own = (node.instance & ~kNodePassable) == place.instance && node.triangle == place.triangle;
     RayTriangle hit = intersectPlaneOf(Triangle(node.a, node.b, node.c), place.start, light.dir);
     if (is_node && !own && isInside(hit) && hit.t > 0.0 && hit.t < light.distance * (1.0 - 1e-5) * hit.size) {
@@ -147,49 +156,77 @@ Shadow walkLists(uvec2 heads, Place place, Arriving light) {
   return shadow;
 }
 
-ivec3 headOf(uint list, uint light) {
-  return ivec3(list & ((1u << kHeadsShift) - 1u), list >> kHeadsShift, light);
-}
-
-/// Share of the light that reaches a point.
-vec3 visibilityOf(uint light_index, LightRecord light, Place place, Arriving arriving, vec3 position) {
+/// The cell of a light's grid that a point lies in: 14 bits of its column, 14 of its row, and the view; kNowhere where
+/// the point is the light's own.
+uint cellOnGrid(LightRecord light, vec3 position) {
   float size = float(light.grid_size);
   uint face = 0u;
   vec2 on_grid;
+  bool valid = true;
   if (!kLightsHavePoints || (kLightsHaveDirectionals && light.kind == kLightDirectional)) {
     vec4 p = vec4(position, 1.0);
     on_grid = vec2(dot(light.grid_row_x, p), dot(light.grid_row_y, p));
   } else {
     CubePlace on_cube = placeOnCube(position - light.position);
-    if (on_cube.depth <= 0.0) return vec3(1.0);
+    valid = on_cube.depth > 0.0;
     face = on_cube.face;
     on_grid = vec2(on_cube.x, on_cube.y) * (0.5 * size / on_cube.depth) + 0.5 * size;
   }
   uvec2 cell = uvec2(clamp(floor(on_grid), vec2(0.0), vec2(size - 1.0)));
-  uint coarse_size = light.grid_size / kCoarseCell;
-  uvec2 coarse = cell / kCoarseCell;
-  uint fine_list = (face * light.grid_size + cell.y) * light.grid_size + cell.x;
-  uint coarse_list = light.view_count * light.grid_size * light.grid_size +
-                     (face * coarse_size + coarse.y) * coarse_size + coarse.x;
-  uvec2 heads = uvec2(texelFetch(grid_heads, headOf(fine_list, light_index), 0).x,
-                      texelFetch(grid_heads, headOf(coarse_list, light_index), 0).x);
+  return valid ? cell.x | (cell.y << 14) | (face << 28) : kNowhere;
+}
+
+/// Lists of a light's grid that hold what may lie between the points of a cell and the light.
+struct GridLists {
+  uint fine;
+  uint coarse;
+  uint mark;  // where it says whether any list of a fine cell in the coarse one holds something: kNowhere if none does
+};
+
+GridLists listsOf(LightRecord light, uint cell) {
+  uvec2 place = uvec2(cell & 0x3FFFu, cell >> 14 & 0x3FFFu);
+  uint face = cell >> 28, size = light.grid_size, coarse_size = size / kCoarseCell;
+  uint coarse = light.view_count * size * size + (face * coarse_size + place.y / kCoarseCell) * coarse_size +
+                place.x / kCoarseCell;
+  return GridLists((face * size + place.y) * size + place.x, coarse,
+                   coarse + light.view_count * coarse_size * coarse_size);
+}
+
+/// Share of the light that reaches a point.
+vec3 visibilityOf(uint light_index, LightRecord light, Place place, Arriving arriving, vec3 position) {
+  uint cell = cellOnGrid(light, position);
+  if (cell == kNowhere) return vec3(1.0);
+  GridLists lists = listsOf(light, cell);
+  uvec2 heads = uvec2(fetchHead(lists.fine, light_index), fetchHead(lists.coarse, light_index));
   Shadow shadow = walkLists(heads, place, arriving);
   if (shadow.blocked) return vec3(0.0);
   return kSceneHasPassable ? exp2(vec3(shadow.octaves) / -kOctave) : vec3(1.0);
+}
+
+/// Is a surface turned towards light that arrives, and is there any?
+bool isReached(LightRecord light, Surface s, Arriving arriving) {
+  return light.view_count != 0u && dot(arriving.dir, s.shading) > 0.0 && dot(arriving.dir, s.geometric) > 0.0 &&
+         max(arriving.irradiance.x, max(arriving.irradiance.y, arriving.irradiance.z)) > 0.0;
+}
+
+/// Where shadows are asked from.
+Place placeOf(Surface s) {
+  return Place(s.position + s.position_error * s.geometric, s.instance_index, s.triangle);
+}
+
+/// Radiance towards the eye of light that nothing keeps from a surface that it reaches, W/m²/sr.
+vec3 radianceUnshadowed(Surface s, MaterialPoint m, vec3 wo, Arriving arriving, float specular_alpha) {
+  return respond(s, m, wo, arriving.dir, specular_alpha) * arriving.irradiance * dot(arriving.dir, s.shading);
 }
 
 /// Radiance towards the eye of what comes straight from one light, W/m²/sr.
 /// @param s   its shading normal perturbed; both normals on the side of the eye
 /// @param wo  unit, to the eye
 vec3 lightFrom(uint light_index, LightRecord light, Surface s, MaterialPoint m, vec3 wo, float specular_alpha) {
-  if (light.view_count == 0u) return vec3(0.0);
   Arriving arriving = arriveFrom(light, s.position);
-  float cos_light = dot(arriving.dir, s.shading);
-  if (cos_light <= 0.0 || dot(arriving.dir, s.geometric) <= 0.0) return vec3(0.0);
-  if (max(arriving.irradiance.x, max(arriving.irradiance.y, arriving.irradiance.z)) <= 0.0) return vec3(0.0);
-  vec3 brdf = respond(s, m, wo, arriving.dir, specular_alpha);
-  Place place = Place(s.position + s.position_error * s.geometric, s.instance_index, s.triangle);
-  return brdf * arriving.irradiance * cos_light * visibilityOf(light_index, light, place, arriving, s.position);
+  if (!isReached(light, s, arriving)) return vec3(0.0);
+  return radianceUnshadowed(s, m, wo, arriving, specular_alpha) *
+         visibilityOf(light_index, light, placeOf(s), arriving, s.position);
 }
 
 vec3 lightFrom(uint light_index, Surface s, MaterialPoint m, vec3 wo, float specular_alpha) {

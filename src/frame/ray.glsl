@@ -12,11 +12,18 @@ struct Ray {
   vec3 dir;  // unit
 };
 
-/// Through a place of a view's picture. @param film  in [-1, 1]², y down
-Ray rayThrough(ViewRecord view, vec2 film) {
+/// Through a place of a view's picture, its direction of any length: origin and direction are linear over the picture.
+/// @param film  in [-1, 1]², y down
+Ray linearRayThrough(ViewRecord view, vec2 film) {
   vec3 across = film.x * view.right - film.y * view.up;
   if (view.is_orthographic != 0u) return Ray(view.eye + across, view.forward);
-  return Ray(view.eye, normalize(view.forward + across));
+  return Ray(view.eye, view.forward + across);
+}
+
+/// Through a place of a view's picture. @param film  in [-1, 1]², y down
+Ray rayThrough(ViewRecord view, vec2 film) {
+  Ray ray = linearRayThrough(view, film);
+  return Ray(ray.origin, normalize(ray.dir));
 }
 
 struct Triangle {

@@ -310,6 +310,7 @@ void SceneBuffers::updateInstances(gpu::Device& device, gpu::CommandRecorder& re
     if (generates) record.flags |= kInstanceGenerates;
     if (place.is_closed) record.flags |= kInstanceClosed;
     if (classes_[mesh.material].is_receiver) record.flags |= kInstanceReceives;
+    if (classes_[mesh.material].is_receiver || scene.materialOf(instance).emits()) record.flags |= kInstanceIsLit;
     instances.push_back(record);
     if (mesh.triangles.empty()) continue;
     Bounds bounds;
