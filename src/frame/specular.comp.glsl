@@ -241,7 +241,8 @@ Receiver meet(inout Chains chains, Met met, uvec2 pixel) {
       noteSurface(chains, identify(s, !path.branched ? 3u : choice.sees_it ? 2u : choice.through ? 1u : 0u), !path.branched,
                   is_specular && (m.varies || (emits && !choice.sees_it && m.emission != vec3(0.0))));
     if (choice.sees_it) {
-      receiver = Receiver(path.events > 0u && (kTask == kFollowMost || isShown(chains)), met.instance, met.triangle, met.u, met.v, -wo, m.optics.ior_from,
+      bool shown = path.events > 0u && (kTask == kFollowMost || isShown(chains));
+      receiver = Receiver(shown, met.instance, met.triangle, met.u, met.v, -wo, m.optics.ior_from,
                           path.throughput / choice.chance);
       chains.path.ended = true;
     } else {
@@ -289,13 +290,31 @@ Receiver followStep(inout Chains chains, uvec2 pixel, bool is_first) {
   return kNoReceiver;
 }
 
+/// Tells the triangle that a chain ends on from others, but for those that go on in its plane: what lies between two
+/// places on a plane lies on it too. With textures each has its own coordinates.
+uint identifyFace(Surface s) {
+  bool is_flat = !kSceneHasTextures && s.shading == s.geometric;
+  float offset = dot(s.position, s.geometric);
+  vec3 magnitude = abs(s.position);
+  // Planes through the origin, but for rounding.
+  if (abs(offset) <= 1e-5 * (magnitude.x + magnitude.y + magnitude.z)) offset = 0.0;
+  // Rounded so far that places on one plane mostly agree; where they do not, the cell is followed as any other.
+  const uint kept = 0xFFFFF800u;
+  return is_flat ? hashChain(packUnitVector(s.geometric), floatBitsToUint(offset) & kept) : s.triangle;
+}
+
 /// What kFollowMost is for.
 void noteEnd(Chains chains, Receiver receiver, uvec2 point) {
   bool lit = receiver.found;
   vec3 weight = lit ? receiver.weight : kSceneHasEnvironment && chains.escaped ? chains.path.throughput : vec3(0.0);
   vec3 place = chains.path.ray.dir;
-  if (lit) place = surfaceMet(receiver.instance, receiver.triangle, receiver.u, receiver.v).position;
-  uint chain = hashChain(hashChain(chains.met, lit ? receiver.instance : kNowhere), lit ? receiver.triangle : 0u) | 1u;
+  uint face = 0u;
+  if (lit) {
+    Surface s = surfaceMet(receiver.instance, receiver.triangle, receiver.u, receiver.v);
+    place = s.position;
+    face = identifyFace(s);
+  }
+  uint chain = hashChain(hashChain(chains.met, lit ? receiver.instance : kNowhere), face) | 1u;
   if (chains.unsure) chain = 0u;
   uint instance = lit ? receiver.instance : kNowhere;
   imageStore(end_image, texelOfEnd(point, chains.way, 0u), uvec4(floatBitsToUint(place), chain));

@@ -1,5 +1,5 @@
 // Sorts the cells of the grid by what they show: of a cell that shows one specular thing all over the chains are followed
-// at its corners, of one that shows some of it at its pixels.
+// at its corners; one that shows several things is left to specular_mixed.comp.glsl.
 //
 // The order of lists differs between runs, what becomes of a pixel does not.
 #version 460
@@ -22,29 +22,6 @@ bool showsOne(Cell cell, uint first) {
   return one;
 }
 
-/// Which of a cell's pixels have a lobe of class S, a bit each in the order of nextPixel.
-uint findSpecular(Cell cell) {
-  uvec2 pixel = cell.first;
-  uint found = 0u, bit = 1u;
-  do {
-    uint seen = texelFetch(seen_image, ivec2(pixel), 0).x;
-    if (seen != 0u && isSpecular(max(seen, 1u) - 1u)) found |= bit;
-    bit <<= 1;
-  } while (nextPixel(cell, pixel));
-  return found;
-}
-
-/// One behind the other: threads that go in step find the same things there.
-void listPixels(Cell cell, uint wanted) {
-  uint next = extend(kFollowedPixels, uint(bitCount(wanted)));
-  uvec2 pixel = cell.first;
-  do {
-    if ((wanted & 1u) != 0u) listed[next++] = packPlace(pixel);
-    wanted >>= 1;
-    nextPixel(cell, pixel);
-  } while (wanted != 0u);
-}
-
 void main() {
   uvec2 point = gl_GlobalInvocationID.xy, points = pointCount();
   if (any(greaterThanEqual(point, points))) return;
@@ -59,7 +36,5 @@ void main() {
   if (any(greaterThanEqual(point + 1u, points)) || any(greaterThanEqual(cell.first, cell.last))) return;
   bool is_one = showsOne(cell, first);
   if (is_one && is_specular) listed[extend(kCells, 1u)] = packPlace(point);
-  if (is_one) return;
-  uint found = findSpecular(cell);
-  if (found != 0u) listPixels(cell, found);
+  if (!is_one) listed[extend(kMixedCells, 1u)] = packPlace(point);
 }

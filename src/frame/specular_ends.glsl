@@ -23,6 +23,9 @@ ivec2 texelOfEnd(uvec2 point, uint chain, uint texel) {
   return ivec2((2u * point.x + chain) * kEndTexels + texel, point.y);
 }
 
+/// In the image of how ends bend between the corners of a cell: one texel along x, one along y, of its two chains.
+ivec2 texelOfBend(uvec2 cell, uint chain, uint along) { return ivec2(2u * (2u * cell.x + chain) + along, cell.y); }
+
 #ifdef NEPHROID_ENDS_BINDING
 
 layout(set = 0, binding = NEPHROID_ENDS_BINDING) uniform usampler2D ends;

@@ -17,7 +17,7 @@ struct ListHead {
 };
 
 layout(set = 0, binding = NEPHROID_GRID_BINDINGS) uniform usampler2D seen_image;
-layout(scalar, set = 0, binding = NEPHROID_GRID_BINDINGS + 1) buffer Lists { ListHead heads[6]; uint listed[]; };
+layout(scalar, set = 0, binding = NEPHROID_GRID_BINDINGS + 1) buffer Lists { ListHead heads[7]; uint listed[]; };
 
 /// Pixels between two points; 1: every pixel is followed, and there are no cells.
 layout(constant_id = 18) const uint kSpacing = 4u;
@@ -32,6 +32,7 @@ const uint kDeviatingPixels = 1u;
 const uint kPoints = 2u;
 const uint kCells = 3u;
 const uint kLitCells = 4u;  // of chain kReflected; the next is of kTransmitted
+const uint kMixedCells = 6u;
 
 // Of a pixel: chains that are shown otherwise.
 const uint kNoReflected = 1u << 15;

@@ -10,6 +10,7 @@
 #include "shaders/frame/specular_agreement.comp.h"
 #include "shaders/frame/specular_cells.comp.h"
 #include "shaders/frame/specular_lit.comp.h"
+#include "shaders/frame/specular_mixed.comp.h"
 #include "shaders/frame/specular_pixels.comp.h"
 
 namespace nephroid {
@@ -34,11 +35,12 @@ gpu::Image makeBandTable(gpu::Device& device, gpu::CommandRecorder& recorder) {
 constexpr std::uint32_t kTaskConstant = 17, kSpacingConstant = 18;
 constexpr std::uint32_t kShowAll = 0, kFollowMost = 1, kShowOthers = 2;
 /// Of frame/specular_grid.glsl.
-constexpr std::uint32_t kListCount = 6, kPixelListCount = 2;
-constexpr std::uint32_t kFollowedPixels = 0, kDeviatingPixels = 1, kPoints = 2, kCells = 3, kLitCells = 4;
+constexpr std::uint32_t kListCount = 7, kPixelListCount = 2;
+constexpr std::uint32_t kFollowedPixels = 0, kDeviatingPixels = 1, kPoints = 2, kCells = 3, kLitCells = 4,
+                        kMixedCells = 6;
 constexpr std::array<ListHead, kListCount> kNoLists{};
 /// Texels of a point: frame/specular_ends.glsl.
-constexpr std::uint32_t kEndTexels = 3, kChainCount = 2;
+constexpr std::uint32_t kEndTexels = 3, kBendTexels = 2, kChainCount = 2;
 
 std::vector<gpu::Constant> join(std::vector<gpu::Constant> constants, const std::vector<gpu::Constant>& more) {
   constants.insert(constants.end(), more.begin(), more.end());
@@ -84,12 +86,14 @@ SpecularPass::SpecularPass(gpu::Device& device, gpu::CommandRecorder& recorder, 
   follow_all_ = follow(kShowAll, "specular");
   if (following.spacing > 1) {
     cells_ = make(shaders::specular_cells_comp, {kTexture, kTable, kStorage}, traits.constants(), "specular cells");
+    mixed_ = make(shaders::specular_mixed_comp, {kTexture, kTable}, traits.constants(), "specular mixed cells");
     follow_most_ = follow(kFollowMost, "specular points");
-    agreement_ = make(shaders::specular_agreement_comp, {kTexture, kTable, kTexture}, traits.pathConstants(),
+    agreement_ = make(shaders::specular_agreement_comp, {kTexture, kTable, kTexture, kStorage}, traits.pathConstants(),
                       "specular agreement");
-    lit_ = make(shaders::specular_lit_comp,
-                {kTexture, kTexture, kTexture, kTable, kTexture, kTable, kTexture, kTexture, kTexture, kStorage},
-                join(traits.constants(), lights), "specular lit");
+    lit_ =
+        make(shaders::specular_lit_comp,
+             {kTexture, kTexture, kTexture, kTable, kTexture, kTable, kTexture, kTexture, kTexture, kStorage, kTexture},
+             join(traits.constants(), lights), "specular lit");
     follow_others_ = follow(kShowOthers, "specular others");
   }
   fitPicture(device);
@@ -123,6 +127,12 @@ void SpecularPass::fitPicture(gpu::Device& device) {
                       .height = kept.y,
                       .usage = VK_IMAGE_USAGE_STORAGE_BIT | VK_IMAGE_USAGE_SAMPLED_BIT},
                      "specular ends");
+  bends_ = gpu::Image(device,
+                      {.format = kFloat4,
+                       .width = kept.x * kBendTexels * kChainCount,
+                       .height = kept.y,
+                       .usage = VK_IMAGE_USAGE_STORAGE_BIT | VK_IMAGE_USAGE_SAMPLED_BIT},
+                      "how specular ends bend");
   const VkDeviceSize words = VkDeviceSize{seen.width} * seen.height * kPixelListCount +
                              VkDeviceSize{points.x} * points.y * (kListCount - kPixelListCount);
   lists_ = gpu::Buffer(device, sizeof(kNoLists) + words * sizeof(std::uint32_t),
@@ -157,9 +167,9 @@ void SpecularPass::recordPixels(gpu::CommandRecorder& recorder, const Push& push
 }
 
 void SpecularPass::recordCells(gpu::CommandRecorder& recorder, const Push& push) {
-  const std::vector<Use> uses = buffers_.uses(
-      Access::kComputeRead,
-      {Use(inputs_.seen, Access::kComputeRead), Use(lists_, Access::kComputeWrite), Use(ends_, Access::kComputeWrite)});
+  const std::vector<Use> uses =
+      buffers_.uses(Access::kComputeRead, {Use(inputs_.seen, Access::kComputeRead), Use(lists_, Access::kDispatchWrite),
+                                           Use(ends_, Access::kComputeWrite)});
   recorder.pass("specular cells", uses, [&](PassCommands& commands) {
     commands.bind(cells_);
     commands.bindResources(
@@ -167,17 +177,25 @@ void SpecularPass::recordCells(gpu::CommandRecorder& recorder, const Push& push)
     commands.pushConstants(push);
     commands.dispatch(gpu::groupsOf(pointCount().x, 8), gpu::groupsOf(pointCount().y, 8));
   });
+  const std::vector<Use> mixed_uses = buffers_.uses(
+      Access::kComputeRead, {Use(inputs_.seen, Access::kComputeRead), Use(lists_, Access::kDispatchWrite)});
+  recorder.pass("specular mixed cells", mixed_uses, [&](PassCommands& commands) {
+    commands.bind(mixed_);
+    commands.bindResources(buffers_.bound({Bound(7, inputs_.seen, buffers_.sampler()), Bound(8, lists_)}));
+    commands.pushConstants(push);
+    commands.dispatchIndirect(lists_, kMixedCells * sizeof(ListHead));
+  });
 }
 
 void SpecularPass::recordAgreement(gpu::CommandRecorder& recorder, const Push& push) {
-  const std::vector<Use> uses = buffers_.uses(
-      Access::kComputeRead,
-      {Use(inputs_.seen, Access::kComputeRead), Use(lists_, Access::kDispatchWrite), Use(ends_, Access::kComputeRead)});
+  const std::vector<Use> uses =
+      buffers_.uses(Access::kComputeRead, {Use(inputs_.seen, Access::kComputeRead), Use(lists_, Access::kDispatchWrite),
+                                           Use(ends_, Access::kComputeRead), Use(bends_, Access::kComputeWrite)});
   recorder.pass("specular agreement", uses, [&](PassCommands& commands) {
     const gpu::Sampler& nearest = buffers_.sampler();
     commands.bind(agreement_);
-    commands.bindResources(
-        buffers_.bound({Bound(7, inputs_.seen, nearest), Bound(8, lists_), Bound(9, ends_, nearest)}));
+    commands.bindResources(buffers_.bound(
+        {Bound(7, inputs_.seen, nearest), Bound(8, lists_), Bound(9, ends_, nearest), Bound(10, bends_)}));
     commands.pushConstants(push);
     commands.dispatchIndirect(lists_, kCells * sizeof(ListHead));
   });
@@ -186,16 +204,17 @@ void SpecularPass::recordAgreement(gpu::CommandRecorder& recorder, const Push& p
 void SpecularPass::recordLit(gpu::CommandRecorder& recorder, Push push) {
   const LightGrids& grids = inputs_.grids;
   std::vector<Use> uses = buffers_.uses(
-      Access::kComputeRead, {Use(inputs_.seen, Access::kComputeRead), Use(lists_, Access::kDispatchRead),
-                             Use(ends_, Access::kComputeRead), Use(inputs_.lamps, Access::kComputeRead),
-                             Use(inputs_.environment, Access::kComputeRead), Use(sum_, Access::kComputeWrite)});
+      Access::kComputeRead,
+      {Use(inputs_.seen, Access::kComputeRead), Use(lists_, Access::kDispatchRead), Use(ends_, Access::kComputeRead),
+       Use(bends_, Access::kComputeRead), Use(inputs_.lamps, Access::kComputeRead),
+       Use(inputs_.environment, Access::kComputeRead), Use(sum_, Access::kComputeWrite)});
   const std::vector<Use> of_lights = grids.uses();
   uses.insert(uses.end(), of_lights.begin(), of_lights.end());
   const gpu::Sampler& nearest = buffers_.sampler();
   std::vector<Bound> bound =
       buffers_.bound({Bound(11, inputs_.seen, nearest), Bound(12, lists_), Bound(13, ends_, nearest),
                       Bound(14, inputs_.lamps, nearest), Bound(15, inputs_.environment, inputs_.environment_sampler),
-                      Bound(16, sum_)});
+                      Bound(16, sum_), Bound(17, bends_, nearest)});
   const std::vector<Bound> of_grids = grids.bound(SceneBuffers::kBindings);
   bound.insert(bound.end(), of_grids.begin(), of_grids.end());
   // One after the other: both add to the same pixels.

@@ -64,8 +64,8 @@ class SpecularPass {
   Inputs inputs_;
   Following following_;
   gpu::ComputePipeline pixels_, follow_all_;
-  gpu::ComputePipeline cells_, follow_most_, agreement_, lit_, follow_others_;  ///< where there are cells
-  gpu::Image bands_, sum_, ends_;
+  gpu::ComputePipeline cells_, mixed_, follow_most_, agreement_, lit_, follow_others_;  ///< where there are cells
+  gpu::Image bands_, sum_, ends_, bends_;
   gpu::Buffer no_lists_, lists_;  ///< the heads of empty lists; heads and lists
 };
 
