@@ -8,14 +8,16 @@
 #include <vector>
 
 #include "core/image/image.h"
+#include "metrics/flip.h"
 
 namespace nephroid {
 
 /// One metric: an entry of the explicit list in metrics.cpp.
 struct Metric {
-  std::string name;  ///< "rmse", "relmse", "mape", "smape", "p99", …
+  std::string name;  ///< "rmse", "relmse", "mape", "smape", "p99", "flip", …
   std::string text;  ///< formula and meaning
-  double (*compute)(const Image& image, const Image& reference, std::span<const std::uint8_t> mask);
+  double (*compute)(const Image& image, const Image& reference, std::span<const std::uint8_t> mask,
+                    const Viewing& viewing);
 };
 std::span<const Metric> metrics();
 /// @throws UsageError with the names there are

@@ -21,6 +21,7 @@ constexpr const char* kExamples = R"(Examples:
 
 struct CompareOptions {
   std::string image, reference, layer, reference_layer, mask, metrics;
+  float pixels_per_degree = kDefaultPixelsPerDegree;
   bool json = false;
 };
 
@@ -29,19 +30,27 @@ struct Comparison {
   std::size_t pixel_count = 0;  ///< those that were compared
   NotFinitePixels not_finite;   ///< those that were left out
   dvec3 image_mean{0}, reference_mean{0};
+  Viewing viewing;  ///< of `flip`
   std::vector<std::pair<std::string, double>> values;
 };
 
-/// A picture of any format as layers; what is not EXR is one layer, `beauty`.
-LayeredImage readLayers(const std::string& path) {
+/// A picture's layers, and whether they are what a screen shows.
+struct PictureFile {
+  LayeredImage image;
+  bool display_referred = false;
+};
+
+/// A picture of any format as layers; what is not EXR is one layer, `beauty`. Files of 8 bits are for screens.
+PictureFile readPicture(const std::string& path) {
   constexpr std::array<std::byte, 4> kExrMagic{std::byte{0x76}, std::byte{0x2f}, std::byte{0x31}, std::byte{0x01}};
   const std::vector<std::byte> bytes = readFile(path);
   if (bytes.size() >= kExrMagic.size() && std::equal(kExrMagic.begin(), kExrMagic.end(), bytes.begin()))
-    return readExr(path);
-  Image image = toLinear(decodeImage(bytes, path));
+    return {readExr(path), false};
+  const DecodedImage decoded = decodeImage(bytes, path);
+  Image image = toLinear(decoded);
   LayeredImage layered{.width = image.width, .height = image.height};
   layered.layers.push_back({"beauty", std::move(image)});
-  return layered;
+  return {std::move(layered), std::holds_alternative<ByteImage>(decoded)};
 }
 
 /// `beauty` if both have it, else the first layer that both have.
@@ -109,13 +118,15 @@ std::vector<const Metric*> chooseMetrics(const std::string& names) {
 
 Comparison comparePictures(const CompareOptions& options) {
   const std::vector<const Metric*> chosen = chooseMetrics(options.metrics);
-  const LayeredImage image_file = readLayers(options.image);
-  const LayeredImage reference_file = readLayers(options.reference);
+  const PictureFile image_file = readPicture(options.image);
+  const PictureFile reference_file = readPicture(options.reference);
   Comparison comparison;
-  comparison.layer = chooseLayer(image_file, reference_file, options);
+  comparison.viewing = {.display_referred = image_file.display_referred && reference_file.display_referred,
+                        .pixels_per_degree = options.pixels_per_degree};
+  comparison.layer = chooseLayer(image_file.image, reference_file.image, options);
   comparison.reference_layer = options.reference_layer.empty() ? comparison.layer : options.reference_layer;
-  const Image image = evaluateLayer(image_file, comparison.layer, options.image);
-  const Image reference = evaluateLayer(reference_file, comparison.reference_layer, options.reference);
+  const Image image = evaluateLayer(image_file.image, comparison.layer, options.image);
+  const Image reference = evaluateLayer(reference_file.image, comparison.reference_layer, options.reference);
   checkSameSize(image, options.image, reference.width, reference.height, options.reference);
   if (image.channels != reference.channels)
     throw InputError(fmt::format("{} has {} channels in '{}', but {} has {} in '{}'; compare like with like",
@@ -127,7 +138,7 @@ Comparison comparePictures(const CompareOptions& options) {
   comparison.image_mean = maskedMean(image, mask);
   comparison.reference_mean = maskedMean(reference, mask);
   for (const Metric* metric : chosen)
-    comparison.values.emplace_back(metric->name, metric->compute(image, reference, mask));
+    comparison.values.emplace_back(metric->name, metric->compute(image, reference, mask, comparison.viewing));
   return comparison;
 }
 
@@ -135,6 +146,14 @@ dvec3 meanRatio(const Comparison& comparison) {
   dvec3 ratio(0);
   for (int c = 0; c < 3; ++c) ratio[c] = comparison.image_mean[c] / comparison.reference_mean[c];
   return ratio;
+}
+
+const char* flipName(const Viewing& viewing) { return viewing.display_referred ? "LDR" : "HDR"; }
+
+/// Which FLIP it is. Other metrics are the same however pictures are looked at.
+std::string describeMetric(const std::string& name, const Viewing& viewing) {
+  if (name != "flip") return "";
+  return fmt::format("  {}, {} pixels per degree", flipName(viewing), viewing.pixels_per_degree);
 }
 
 std::string formatComparison(const Comparison& comparison) {
@@ -151,7 +170,8 @@ std::string formatComparison(const Comparison& comparison) {
   text += fmt::format("\n{:<16} {:>12} {:>12} {:>12}\n", "", "R", "G", "B");
   text += row("mean", comparison.image_mean) + row("reference mean", comparison.reference_mean);
   text += row("ratio", meanRatio(comparison));
-  for (const auto& [name, value] : comparison.values) text += fmt::format("{:<16} {:>12.6g}\n", name, value);
+  for (const auto& [name, value] : comparison.values)
+    text += fmt::format("{:<16} {:>12.6g}{}\n", name, value, describeMetric(name, comparison.viewing));
   return text;
 }
 
@@ -171,7 +191,8 @@ std::string formatComparisonJson(const CompareOptions& options, const Comparison
       {"mean", triple(comparison.image_mean)},
       {"reference_mean", triple(comparison.reference_mean)},
       {"ratio", triple(meanRatio(comparison))},
-      {"metrics", values}};
+      {"metrics", values},
+      {"flip", {{"kind", flipName(comparison.viewing)}, {"pixels_per_degree", comparison.viewing.pixels_per_degree}}}};
   // Names of files need not be UTF-8, which JSON must be.
   return json.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace) + "\n";
 }
@@ -211,6 +232,11 @@ Command addCompareCommand(CLI::App& root) {
   addValue(*app, "--mask", options->mask, "FILE",
            {"A PNG of the same size; pixels of value 255 count.", "all", "", ""});
   addValue(*app, "--metric", options->metrics, "LIST", {"Metrics, separated by commas.", "all", metricNames(), ""});
+  addValue(*app, "--pixels-per-degree", options->pixels_per_degree, "P",
+           {"For flip: how many pixels the eye that looks at the pictures has in a degree; more are further away.",
+            fmt::format("{}", kDefaultPixelsPerDegree),
+            fmt::format("{} to {}", kMinPixelsPerDegree, kMaxPixelsPerDegree), "px/deg"},
+           checkNumber(double{kMinPixelsPerDegree}, double{kMaxPixelsPerDegree}));
   addSwitch(*app, "--json", options->json, "Print JSON.");
   return {app, [options] { return runCompare(*options); }};
 }
