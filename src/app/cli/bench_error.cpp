@@ -62,7 +62,7 @@ void addLostShares(ErrorResult& result, const std::vector<Ledger>& ledgers) {
   for (const Ledger& ledger : ledgers) sum.add(ledger);
   const double met = relativeLuminance(sum.emitted - sum.missed - sum.blocked);
   const auto share = [met](const dvec3& flux) { return met > 0 ? relativeLuminance(flux) / met : 0.0; };
-  result.lost = share(sum.lostTotal());
+  result.lost = std::max(share(sum.lostTotal()), 0.0);  // below 0 it is rounding
   for (std::size_t i = 0; i < sum.lost.size(); ++i)
     if (const double lost = share(sum.lost[i]); lost > 0)
       result.lost_by_reason.push_back({std::string(lossReasonName(static_cast<LossReason>(i))), lost});
