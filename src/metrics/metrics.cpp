@@ -62,11 +62,14 @@ double computeNrmse(const Image& image, const Image& reference, Mask mask) {
   return divide(computeRmse(image, reference, mask), computeReferenceMean(image, reference, mask));
 }
 
+double computeRelativeSquare(double value, double truth, double floor) {
+  return divide((value - truth) * (value - truth), truth * truth + floor * floor);
+}
+
 double computeRelMse(const Image& image, const Image& reference, Mask mask) {
   const double floor = kRelativeFloor * computeReferenceMean(image, reference, mask);
-  return computeMean(image, reference, mask, [floor](double value, double truth) {
-    return divide((value - truth) * (value - truth), truth * truth + floor * floor);
-  });
+  return computeMean(image, reference, mask,
+                     [floor](double value, double truth) { return computeRelativeSquare(value, truth, floor); });
 }
 
 double computeL1(const Image& image, const Image& reference, Mask mask) {
@@ -146,6 +149,19 @@ const Metric& findMetric(std::string_view name) {
   const std::string nearest = suggestName(name, names);
   const std::string hint = nearest.empty() ? "" : fmt::format("; did you mean '{}'?", nearest);
   throw UsageError(fmt::format("unknown metric '{}'{} (known: {})", name, hint, fmt::join(names, ", ")));
+}
+
+Image computeRelMseMap(const Image& image, const Image& reference, std::span<const std::uint8_t> mask) {
+  const double floor = kRelativeFloor * computeReferenceMean(image, reference, mask);
+  Image map(image.width, image.height, 1);
+  for (int y = 0; y < image.height; ++y)
+    for (int x = 0; x < image.width; ++x) {
+      const vec3 value = image.rgb(x, y), truth = reference.rgb(x, y);
+      double sum = 0.0;
+      for (int c = 0; c < 3; ++c) sum += computeRelativeSquare(double{value[c]}, double{truth[c]}, floor);
+      *map.at(x, y) = static_cast<float>(sum / 3.0);
+    }
+  return map;
 }
 
 NotFinitePixels excludeNotFinite(const Image& image, const Image& reference, std::span<std::uint8_t> mask) {

@@ -23,6 +23,10 @@ std::span<const Metric> metrics();
 /// @throws UsageError with the names there are
 const Metric& findMetric(std::string_view name);
 
+/// `relmse` by pixel, the mean over channels: `height × width × 1`, also where the mask, whose mean reference it takes,
+/// selects nothing. @throws InputError as the metric
+Image computeRelMseMap(const Image& image, const Image& reference, std::span<const std::uint8_t> mask);
+
 /// The layer `expression` names: "caustic", or a sum "direct+caustic".
 /// @throws InputError naming the layer that the file lacks
 Image evaluateLayerExpression(const LayeredImage& image, std::string_view expression);
