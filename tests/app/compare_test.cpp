@@ -121,6 +121,37 @@ TEST(Compare, FlipLooksFromTheDistanceThatIsAskedFor) {
   EXPECT_EQ(runNephroid({"compare", "a.png", "b.png", "--pixels-per-degree", "9"}).exit_code, 2);
 }
 
+TEST(Compare, WritesAPageWithItsFiguresAndTheFilesMetadata) {
+  const TempFolder folder;
+  const std::string a = folder.file("a&b.exr"), b = folder.file("b.exr"), page_file = folder.file("page.html");
+  writeConstant(a, 4, 3, {{"beauty", 3.0F}});
+  LayeredImage reference{.width = 4, .height = 3};
+  reference.layers.push_back({"beauty", Image(4, 3, 3, 2.0F)});
+  reference.metadata["scene"] = "</td><script>alert(1)</script>";
+  writeExr(b, reference);
+  const ProcessResult result = runNephroid({"compare", a, b, "--metric", "relmse", "--html", page_file});
+  ASSERT_EQ(result.exit_code, 0) << result.err;
+  EXPECT_THAT(result.err, HasSubstr("wrote " + page_file));
+  const std::string page = readText(page_file);
+  EXPECT_THAT(page, HasSubstr("a&amp;b.exr"));
+  EXPECT_THAT(page, HasSubstr("layer beauty, 12 pixels; flip: HDR, 67 pixels per degree"));
+  EXPECT_THAT(page, HasSubstr("<td>&lt;/td&gt;&lt;script&gt;alert(1)&lt;/script&gt;</td>"));
+  EXPECT_THAT(page, Not(HasSubstr("<script>alert")));
+  // The same number as in the table.
+  const std::size_t begin = result.out.find("relmse");
+  ASSERT_NE(begin, std::string::npos);
+  std::string value = result.out.substr(begin + 6, result.out.find('\n', begin) - begin - 6);
+  value.erase(0, value.find_first_not_of(' '));
+  EXPECT_THAT(page, HasSubstr("<th scope=\"row\">relmse</th><td>" + value + "</td>"));
+}
+
+TEST(Compare, PageThatCannotBeWrittenIsSaidBeforeTheWork) {
+  const TempFolder folder;
+  const ProcessResult result = runNephroid({"compare", "none.exr", "none.exr", "--html", folder.file("no/page.html")});
+  EXPECT_EQ(result.exit_code, 5);
+  EXPECT_EQ(countLines(result.err), 1) << result.err;
+}
+
 TEST(Compare, UnknownMetricIsWrongUsage) {
   const TempFolder folder;
   writeConstant(folder.file("a.exr"), 4, 3, {{"beauty", 1.0F}});
