@@ -131,7 +131,7 @@ std::string makeMetadata(const ReportContent& content) {
     const std::string a = find(image, key), b = find(reference, key);
     rows += makeRow(key, {a, b}, a == b ? "" : "differs");
   }
-  return rows.empty() ? "<tr><td colspan=\"3\">Neither file has any.</td></tr>" : rows;
+  return rows.empty() ? "<tr><td colspan=\"3\">None. It is read from EXR files.</td></tr>" : rows;
 }
 
 /// What the page's program needs to know; no text from files is in it.

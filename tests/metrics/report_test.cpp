@@ -252,7 +252,7 @@ TEST(Report, OfBlackAndUnknownPixelsIsStillAPage) {
   const ReportContent content{.image = {"a", bad, {}}, .reference = {"b", black, {}}, .mask = mask};
   const std::string page = makeReport(content);
   EXPECT_EQ(findBadNesting(page), "");
-  EXPECT_THAT(page, HasSubstr("Neither file has any."));
+  EXPECT_THAT(page, HasSubstr("None. It is read from EXR files."));
   EXPECT_NO_THROW(readSettings(page));
 }
 
