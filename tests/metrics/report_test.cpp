@@ -1,6 +1,7 @@
 // The page of a comparison: what stands in it, and that nothing from files can change it.
 #include "metrics/report.h"
 
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -9,6 +10,7 @@
 #include <nlohmann/json.hpp>
 #include <regex>
 #include <set>
+#include <span>
 
 #include "core/image/image_io.h"
 #include "metrics/html.h"

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <chrono>
+#include <nlohmann/json.hpp>
 
 #include "app/cli/memory.h"
 #include "app/cli/progress_bar.h"
