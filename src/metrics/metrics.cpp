@@ -12,54 +12,21 @@
 #include <limits>
 
 #include "core/params.h"
+#include "metrics/samples.h"
 #include "nephroid/error.h"
 
 namespace nephroid {
 namespace {
 
-using Mask = std::span<const std::uint8_t>;
-
-/// The value of a mask's pixels that count. Anything else does not: a resampled or lossy mask has soft edges, whose
-/// pixels belong to neither side.
-constexpr std::uint8_t kSelected = 255;
-
 /// Fraction of the mean reference that is added to the denominators of relative errors (DESIGN, "Error figures"):
 /// without it, the figure would be ruled by the darkest pixels.
 constexpr double kRelativeFloor = 0.01;
 
-void checkMask(const Image& image, Mask mask) {
-  const auto pixel_count = static_cast<std::size_t>(image.width) * static_cast<std::size_t>(image.height);
-  if (!mask.empty() && mask.size() != pixel_count)
-    throw InputError(fmt::format("mask of {} pixels for an image of {} x {}; expected one of the same size",
-                                 mask.size(), image.width, image.height));
-}
-
-void checkSizes(const Image& image, const Image& reference, Mask mask) {
-  if (image.width != reference.width || image.height != reference.height)
-    throw InputError(fmt::format("image of {} x {} pixels, reference of {} x {}; render both at the same size",
-                                 image.width, image.height, reference.width, reference.height));
-  checkMask(image, mask);
-}
-
-/// Calls `visit(x, y)` for the pixels that count, row by row.
-/// @throws InputError if there is none
-template <class Visit>
-void forEachPixel(const Image& image, Mask mask, const Visit& visit) {
-  std::size_t count = 0;
-  std::size_t index = 0;
-  for (int y = 0; y < image.height; ++y)
-    for (int x = 0; x < image.width; ++x, ++index) {
-      if (!mask.empty() && mask[index] != kSelected) continue;
-      visit(x, y);
-      ++count;
-    }
-  if (count == 0) throw InputError("nothing to measure: the mask selects no pixel; pixels of value 255 count");
-}
-
 /// Calls `visit(value, reference value)` for each channel of each pixel that counts.
 template <class Visit>
 void forEachSample(const Image& image, const Image& reference, Mask mask, const Visit& visit) {
-  checkSizes(image, reference, mask);
+  checkSameSize(image, reference);
+  checkMask(image, mask);
   const int channel_count = image.channels >= 3 || reference.channels >= 3 ? 3 : 1;
   forEachPixel(image, mask, [&](int x, int y) {
     const vec3 value = image.rgb(x, y), truth = reference.rgb(x, y);
@@ -95,11 +62,14 @@ double computeNrmse(const Image& image, const Image& reference, Mask mask) {
   return divide(computeRmse(image, reference, mask), computeReferenceMean(image, reference, mask));
 }
 
+double computeRelativeSquare(double value, double truth, double floor) {
+  return divide((value - truth) * (value - truth), truth * truth + floor * floor);
+}
+
 double computeRelMse(const Image& image, const Image& reference, Mask mask) {
   const double floor = kRelativeFloor * computeReferenceMean(image, reference, mask);
-  return computeMean(image, reference, mask, [floor](double value, double truth) {
-    return divide((value - truth) * (value - truth), truth * truth + floor * floor);
-  });
+  return computeMean(image, reference, mask,
+                     [floor](double value, double truth) { return computeRelativeSquare(value, truth, floor); });
 }
 
 double computeL1(const Image& image, const Image& reference, Mask mask) {
@@ -139,19 +109,33 @@ double computeP99(const Image& image, const Image& reference, Mask mask) {
   return *found;
 }
 
+/// A metric that is a matter of numbers, however the pictures are looked at.
+template <double (*kCompute)(const Image&, const Image&, Mask)>
+double ignoreViewing(const Image& image, const Image& reference, Mask mask, const Viewing&) {
+  return kCompute(image, reference, mask);
+}
+
 }  // namespace
 
 std::span<const Metric> metrics() {
   static const std::array entries{
-      Metric{"rmse", "sqrt(mean (I-R)^2): root of the mean squared error, in the layer's unit", computeRmse},
-      Metric{"nrmse", "rmse / mean R: the same as a fraction of the mean reference", computeNrmse},
+      Metric{"rmse", "sqrt(mean (I-R)^2): root of the mean squared error, in the layer's unit",
+             ignoreViewing<computeRmse>},
+      Metric{"nrmse", "rmse / mean R: the same as a fraction of the mean reference", ignoreViewing<computeNrmse>},
       Metric{"relmse", "mean((I-R)^2 / (R^2 + (0.01 mean R)^2)): mean squared error relative to each pixel",
-             computeRelMse},
-      Metric{"l1", "mean |I-R| / mean R: absolute error as a fraction of the reference's total", computeL1},
-      Metric{"mape", "mean(|I-R| / (|R| + 0.01 mean R)): mean absolute error relative to each pixel", computeMape},
-      Metric{"smape", "mean(2 |I-R| / (|I| + |R|)), 0 where both are black: symmetric, in [0, 2]", computeSmape},
+             ignoreViewing<computeRelMse>},
+      Metric{"l1", "mean |I-R| / mean R: absolute error as a fraction of the reference's total",
+             ignoreViewing<computeL1>},
+      Metric{"mape", "mean(|I-R| / (|R| + 0.01 mean R)): mean absolute error relative to each pixel",
+             ignoreViewing<computeMape>},
+      Metric{"smape", "mean(2 |I-R| / (|I| + |R|)), 0 where both are black: symmetric, in [0, 2]",
+             ignoreViewing<computeSmape>},
       Metric{"p99", "99th percentile (nearest rank) of |I-R| / (|R| + 0.01 mean R): how bad the worst places are",
-             computeP99},
+             ignoreViewing<computeP99>},
+      Metric{"flip",
+             "FLIP: mean of how much an eye sees change where R takes the place of I, in [0, 1]; 8-bit pictures as "
+             "they are (LDR-FLIP), others at every exposure that R has something to show at (HDR-FLIP)",
+             computeFlip},
   };
   return entries;
 }
@@ -167,8 +151,22 @@ const Metric& findMetric(std::string_view name) {
   throw UsageError(fmt::format("unknown metric '{}'{} (known: {})", name, hint, fmt::join(names, ", ")));
 }
 
+Image computeRelMseMap(const Image& image, const Image& reference, std::span<const std::uint8_t> mask) {
+  const double floor = kRelativeFloor * computeReferenceMean(image, reference, mask);
+  Image map(image.width, image.height, 1);
+  for (int y = 0; y < image.height; ++y)
+    for (int x = 0; x < image.width; ++x) {
+      const vec3 value = image.rgb(x, y), truth = reference.rgb(x, y);
+      double sum = 0.0;
+      for (int c = 0; c < 3; ++c) sum += computeRelativeSquare(double{value[c]}, double{truth[c]}, floor);
+      *map.at(x, y) = static_cast<float>(sum / 3.0);
+    }
+  return map;
+}
+
 NotFinitePixels excludeNotFinite(const Image& image, const Image& reference, std::span<std::uint8_t> mask) {
-  checkSizes(image, reference, mask);
+  checkSameSize(image, reference);
+  checkMask(image, mask);
   NotFinitePixels found;
   std::size_t left = 0;
   std::size_t index = 0;

@@ -8,18 +8,24 @@
 #include <vector>
 
 #include "core/image/image.h"
+#include "metrics/flip.h"
 
 namespace nephroid {
 
 /// One metric: an entry of the explicit list in metrics.cpp.
 struct Metric {
-  std::string name;  ///< "rmse", "relmse", "mape", "smape", "p99", …
+  std::string name;  ///< "rmse", "relmse", "mape", "smape", "p99", "flip", …
   std::string text;  ///< formula and meaning
-  double (*compute)(const Image& image, const Image& reference, std::span<const std::uint8_t> mask);
+  double (*compute)(const Image& image, const Image& reference, std::span<const std::uint8_t> mask,
+                    const Viewing& viewing);
 };
 std::span<const Metric> metrics();
 /// @throws UsageError with the names there are
 const Metric& findMetric(std::string_view name);
+
+/// `relmse` by pixel, the mean over channels: `height × width × 1`, also where the mask, whose mean reference it takes,
+/// selects nothing. @throws InputError as the metric
+Image computeRelMseMap(const Image& image, const Image& reference, std::span<const std::uint8_t> mask);
 
 /// The layer `expression` names: "caustic", or a sum "direct+caustic".
 /// @throws InputError naming the layer that the file lacks

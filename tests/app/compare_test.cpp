@@ -81,6 +81,77 @@ TEST(Compare, OtherSizeOrMissingLayerIsBadInput) {
   EXPECT_EQ(runNephroid({"compare", folder.file("a.exr"), folder.file("missing.exr")}).exit_code, 3);
 }
 
+// Twice and four times white: on a screen all is white, in the scene they differ.
+TEST(Compare, FlipTakesPngsAsShownAndExrsAsLight) {
+  const TempFolder folder;
+  writeConstant(folder.file("a.exr"), 4, 3, {{"beauty", 4.0F}});
+  writeConstant(folder.file("b.exr"), 4, 3, {{"beauty", 2.0F}});
+  writePng(folder.file("a.png"), Image(4, 3, 3, 1.0F));
+  writePng(folder.file("b.png"), Image(4, 3, 3, 1.0F));
+  const auto flip = [&](const char* image, const char* reference) {
+    const ProcessResult result =
+        runNephroid({"compare", folder.file(image), folder.file(reference), "--metric", "flip", "--json"});
+    EXPECT_EQ(result.exit_code, 0) << result.err;
+    return nlohmann::json::parse(result.out);
+  };
+  EXPECT_EQ(flip("a.png", "b.png")["metrics"]["flip"], 0.0);
+  EXPECT_EQ(flip("a.png", "b.png")["flip"]["kind"], "LDR");
+  EXPECT_GT(flip("a.exr", "b.exr")["metrics"]["flip"], 0.05);
+  EXPECT_EQ(flip("a.exr", "b.exr")["flip"]["kind"], "HDR");
+  EXPECT_EQ(flip("a.png", "b.exr")["flip"]["kind"], "HDR");
+}
+
+TEST(Compare, FlipLooksFromTheDistanceThatIsAskedFor) {
+  const TempFolder folder;
+  Image line(31, 31, 3);
+  for (int y = 0; y < 31; ++y) line.setRgb(15, y, vec3(1.0F));
+  writePng(folder.file("a.png"), line);
+  writePng(folder.file("b.png"), Image(31, 31, 3));
+  const auto flipFrom = [&](const char* pixels_per_degree) {
+    const ProcessResult result = runNephroid({"compare", folder.file("a.png"), folder.file("b.png"), "--metric", "flip",
+                                              "--pixels-per-degree", pixels_per_degree, "--json"});
+    EXPECT_EQ(result.exit_code, 0) << result.err;
+    return nlohmann::json::parse(result.out);
+  };
+  const nlohmann::json near = flipFrom("30"), far = flipFrom("120");
+  EXPECT_EQ(near["flip"]["pixels_per_degree"], 30.0);
+  EXPECT_NE(near["metrics"]["flip"], far["metrics"]["flip"]);
+  EXPECT_THAT(runNephroid({"compare", folder.file("a.png"), folder.file("b.png")}).out,
+              HasSubstr("  LDR, 67 pixels per degree\n"));
+  EXPECT_EQ(runNephroid({"compare", "a.png", "b.png", "--pixels-per-degree", "9"}).exit_code, 2);
+}
+
+TEST(Compare, WritesAPageWithItsFiguresAndTheFilesMetadata) {
+  const TempFolder folder;
+  const std::string a = folder.file("a&b.exr"), b = folder.file("b.exr"), page_file = folder.file("page.html");
+  writeConstant(a, 4, 3, {{"beauty", 3.0F}});
+  LayeredImage reference{.width = 4, .height = 3};
+  reference.layers.push_back({"beauty", Image(4, 3, 3, 2.0F)});
+  reference.metadata["scene"] = "</td><script>alert(1)</script>";
+  writeExr(b, reference);
+  const ProcessResult result = runNephroid({"compare", a, b, "--metric", "relmse", "--html", page_file});
+  ASSERT_EQ(result.exit_code, 0) << result.err;
+  EXPECT_THAT(result.err, HasSubstr("wrote " + page_file));
+  const std::string page = readText(page_file);
+  EXPECT_THAT(page, HasSubstr("a&amp;b.exr"));
+  EXPECT_THAT(page, HasSubstr("layer beauty, 12 pixels; flip: HDR, 67 pixels per degree"));
+  EXPECT_THAT(page, HasSubstr("<td>&lt;/td&gt;&lt;script&gt;alert(1)&lt;/script&gt;</td>"));
+  EXPECT_THAT(page, Not(HasSubstr("<script>alert")));
+  // The same number as in the table.
+  const std::size_t begin = result.out.find("relmse");
+  ASSERT_NE(begin, std::string::npos);
+  std::string value = result.out.substr(begin + 6, result.out.find('\n', begin) - begin - 6);
+  value.erase(0, value.find_first_not_of(' '));
+  EXPECT_THAT(page, HasSubstr("<th scope=\"row\">relmse</th><td>" + value + "</td>"));
+}
+
+TEST(Compare, PageThatCannotBeWrittenIsSaidBeforeTheWork) {
+  const TempFolder folder;
+  const ProcessResult result = runNephroid({"compare", "none.exr", "none.exr", "--html", folder.file("no/page.html")});
+  EXPECT_EQ(result.exit_code, 5);
+  EXPECT_EQ(countLines(result.err), 1) << result.err;
+}
+
 TEST(Compare, UnknownMetricIsWrongUsage) {
   const TempFolder folder;
   writeConstant(folder.file("a.exr"), 4, 3, {{"beauty", 1.0F}});

@@ -1,4 +1,4 @@
-// The real program with the technique `none`: what needs a Vulkan device.
+// The real program with real-time techniques: what needs a Vulkan device.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -62,6 +62,20 @@ TEST(NoneTechnique, BenchTellsTimeOfEachPassOfAFrame) {
     EXPECT_EQ(measurement["values"].size(), 2U);
   }
   EXPECT_TRUE(found) << result.out;
+}
+
+TEST(BenchError, ComparesWhatDrawsCausticsInRealTime) {
+  const TempFolder folder;
+  const ProcessResult result = runApart(folder, {"bench", "--error", "builtin:slab", "--size", "32x24", "--samples",
+                                                 "1", "--reference-photons", "200k", "--json"});
+  ASSERT_EQ(result.exit_code, 0) << result.err;
+  const nlohmann::json results = nlohmann::json::parse(result.out)["results"];
+  ASSERT_EQ(results.size(), 2U) << result.out;  // `none` draws none
+  EXPECT_EQ(results[1]["technique"], "caustic-map");
+  EXPECT_NE(results[1]["device"], "cpu");
+  EXPECT_NEAR(results[1]["energy"].get<double>(), 1.0, 0.03);
+  EXPECT_LT(results[1]["relmse"].get<double>(), 0.2);
+  EXPECT_LT(results[1]["lost"].get<double>(), 0.01);
 }
 
 }  // namespace

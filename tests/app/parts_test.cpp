@@ -6,7 +6,7 @@
 #include <cstring>
 
 #include "api/display.h"
-#include "app/cli/bench.h"
+#include "app/cli/bench_speed.h"
 #include "app/cli/devices.h"
 #include "app/cli/help.h"
 #include "app/cli/memory.h"

@@ -205,21 +205,5 @@ TEST(Info, DescribesTheSceneOnStdout) {
   EXPECT_FALSE(nlohmann::json::parse(json.out).empty());
 }
 
-TEST(Bench, ReportsMedianAndSpreadAsJson) {
-  const ProcessResult result =
-      runNephroid({"bench", "builtin:ring", "--technique", "reference", "--repeats", "2", "--warmup", "0", "--size",
-                   "16x12", "--samples", "1", "--photons", "1000", "--json"});
-  ASSERT_EQ(result.exit_code, 0) << result.err;
-  const nlohmann::json json = nlohmann::json::parse(result.out);
-  EXPECT_EQ(json["results"][0]["scene"], "builtin:ring");
-  std::vector<std::string> names;
-  for (const auto& measurement : json["results"][0]["measurements"]) {
-    names.push_back(measurement["name"]);
-    EXPECT_GT(measurement["median"].get<double>(), 0) << names.back();
-  }
-  EXPECT_THAT(names, Contains("rays"));
-  EXPECT_THAT(names, Contains("peak memory"));
-}
-
 }  // namespace
 }  // namespace nephroid::test

@@ -21,14 +21,14 @@ Image makeRow(std::initializer_list<float> values) {
 
 double compute(std::string_view metric, const Image& image, const Image& reference,
                std::span<const std::uint8_t> mask = {}) {
-  return findMetric(metric).compute(image, reference, mask);
+  return findMetric(metric).compute(image, reference, mask, {});
 }
 
 TEST(Metrics, AreZeroForEqualPictures) {
   const Image image = makeRow({0.0F, 1.0F, 5.0F});
-  for (const Metric& metric : metrics()) EXPECT_EQ(metric.compute(image, image, {}), 0.0) << metric.name;
+  for (const Metric& metric : metrics()) EXPECT_EQ(metric.compute(image, image, {}, {}), 0.0) << metric.name;
   const Image black = makeRow({0.0F, 0.0F});
-  for (const Metric& metric : metrics()) EXPECT_EQ(metric.compute(black, black, {}), 0.0) << metric.name;
+  for (const Metric& metric : metrics()) EXPECT_EQ(metric.compute(black, black, {}, {}), 0.0) << metric.name;
 }
 
 TEST(Metrics, FollowTheirFormulas) {
@@ -47,7 +47,8 @@ TEST(Metrics, RelativeOnesDoNotDependOnTheScale) {
   const Image image_1024 = makeRow({1024.0F, 4096.0F, 0.0F}), reference_1024 = makeRow({2048.0F, 2048.0F, 1024.0F});
   for (const Metric& metric : metrics()) {
     const double factor = metric.name == "rmse" ? 1024.0 : 1.0;
-    EXPECT_NEAR(metric.compute(image_1024, reference_1024, {}), factor * metric.compute(image, reference, {}), 1e-9)
+    EXPECT_NEAR(metric.compute(image_1024, reference_1024, {}, {}), factor * metric.compute(image, reference, {}, {}),
+                1e-9)
         << metric.name;
   }
 }
@@ -72,14 +73,15 @@ TEST(Metrics, TreatOneChannelAsThree) {
   Image rgb(2, 1, 3, 2.0F);
   const Image grey(2, 1, 1, 1.0F);
   for (const Metric& metric : metrics())
-    EXPECT_DOUBLE_EQ(metric.compute(rgb, grey, {}), metric.compute(makeRow({2.0F, 2.0F}), grey, {})) << metric.name;
+    EXPECT_DOUBLE_EQ(metric.compute(rgb, grey, {}, {}), metric.compute(makeRow({2.0F, 2.0F}), grey, {}, {}))
+        << metric.name;
 }
 
 TEST(Metrics, AreNotFiniteIfAPixelIsNaN) {
   const Image bad = makeRow({std::numeric_limits<float>::quiet_NaN(), 1.0F}), good = makeRow({1.0F, 1.0F});
   for (const Metric& metric : metrics()) {
-    EXPECT_TRUE(std::isnan(metric.compute(bad, good, {}))) << metric.name;
-    EXPECT_TRUE(std::isnan(metric.compute(good, bad, {}))) << metric.name;
+    EXPECT_TRUE(std::isnan(metric.compute(bad, good, {}, {}))) << metric.name;
+    EXPECT_TRUE(std::isnan(metric.compute(good, bad, {}, {}))) << metric.name;
   }
 }
 
@@ -94,9 +96,9 @@ TEST(Metrics, RefuseOtherSizesAndEmptyMasks) {
   const Image two = makeRow({1.0F, 1.0F}), three = makeRow({1.0F, 1.0F, 1.0F});
   const std::vector<std::uint8_t> none{0, 128}, short_mask{255};
   for (const Metric& metric : metrics()) {
-    EXPECT_THROW(metric.compute(two, three, {}), InputError) << metric.name;
-    EXPECT_THROW(metric.compute(two, two, none), InputError) << metric.name;
-    EXPECT_THROW(metric.compute(two, two, short_mask), InputError) << metric.name;
+    EXPECT_THROW(metric.compute(two, three, {}, {}), InputError) << metric.name;
+    EXPECT_THROW(metric.compute(two, two, none, {}), InputError) << metric.name;
+    EXPECT_THROW(metric.compute(two, two, short_mask, {}), InputError) << metric.name;
   }
 }
 
@@ -117,7 +119,7 @@ TEST(ExcludeNotFinite, CountsAndLeavesOutPixelsOfEitherPicture) {
   EXPECT_EQ(found.in_image, 2U);  // the fifth does not count
   EXPECT_EQ(found.in_reference, 2U);
   EXPECT_EQ(mask, (std::vector<std::uint8_t>{0, 0, 0, 255, 0, 255}));
-  for (const Metric& metric : metrics()) EXPECT_TRUE(std::isfinite(metric.compute(image, reference, mask)));
+  for (const Metric& metric : metrics()) EXPECT_TRUE(std::isfinite(metric.compute(image, reference, mask, {})));
   EXPECT_DOUBLE_EQ(compute("rmse", image, reference, mask), std::sqrt(2.0));
 }
 

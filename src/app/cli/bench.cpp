@@ -1,106 +1,78 @@
-// `nephroid bench`: how fast each technique draws each scene on this machine.
-#include "app/cli/bench.h"
-
+// `nephroid bench`: how fast each technique draws each scene on this machine, and how far from the reference.
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <chrono>
 #include <fstream>
 #include <nlohmann/json.hpp>
-#include <optional>
 #include <thread>
 
+#include "app/cli/bench_error.h"
+#include "app/cli/bench_speed.h"
 #include "app/cli/command.h"
 #include "app/cli/embedded.h"
-#include "app/cli/memory.h"
 #include "app/cli/options.h"
-#include "app/cli/progress_bar.h"
-#include "app/cli/scene_options.h"
 #include "app/cli/stop.h"
 #include "app/cli/technique_options.h"
 #include "app/cli/terminal.h"
 #include "nephroid/nephroid.h"
-#include "scene/edit.h"
 
 namespace nephroid::cli {
 namespace {
 
 using Json = nlohmann::ordered_json;
-using Clock = std::chrono::steady_clock;
 
 constexpr const char* kExamples = R"(Examples:
   nephroid bench
-  nephroid bench builtin:ring glass.glb --repeats 11 --json)";
+  nephroid bench builtin:ring glass.glb --repeats 11 --json
+  nephroid bench --error
+  nephroid bench --error builtin:ring --technique caustic-map --set grid=512 --reference-photons 200M)";
 
 constexpr int kMaxRepeats = 1000;
 
 struct BenchOptions {
   std::vector<std::string> scenes;
-  TechniqueOptions technique;
   std::string only_technique;
+  TechniqueOptions technique;
   int warmup = 1, repeats = 5;
+  bool error = false;
+  std::uint64_t reference_photons = 0;
   bool json = false;
 };
 
-Json defaultList() { return Json::parse(kBenchScenes); }
+/// What bench/scenes.json has for one of the two kinds of benchmark.
+struct Defaults {
+  Size size;
+  std::uint64_t samples = 0, photons = 0, reference_photons = 0;
+  std::vector<std::string> scenes;
+};
 
-double secondsSince(Clock::time_point start) { return std::chrono::duration<double>(Clock::now() - start).count(); }
-
-/// Adds `value` to the measurement of that name, made on first use.
-void addMeasured(std::vector<Measurement>& measurements, const std::string& name, const std::string& unit,
-                 double value) {
-  auto found = std::find_if(measurements.begin(), measurements.end(),
-                            [&](const Measurement& measurement) { return measurement.name == name; });
-  if (found == measurements.end()) found = measurements.insert(measurements.end(), Measurement{name, unit, {}});
-  found->values.push_back(value);
+/// @param kind  "speed" or "error"
+Defaults readDefaults(const char* kind) {
+  const Json list = Json::parse(kBenchScenes)[kind];
+  const auto count = [&](const char* key) { return parseCount(key, list.value(key, "0")); };
+  return {parseSize("size", list["size"].get<std::string>()), count("samples"), count("photons"),
+          count("reference-photons"), list["scenes"].get<std::vector<std::string>>()};
 }
 
-/// A stage as time of a frame, if it is a part of one; frames are what real time is counted in.
-void addStage(std::vector<Measurement>& measurements, const StageTime& stage) {
-  if (stage.frames == 0) return addMeasured(measurements, stage.name, "s", stage.seconds);
-  addMeasured(measurements, stage.name + " / frame", "ms", 1e3 * stage.seconds / static_cast<double>(stage.frames));
+/// Gives what the command line leaves open the value that it has for this kind of benchmark.
+void completeOptions(BenchOptions& options, const CLI::App& app) {
+  const Defaults defaults = readDefaults(options.error ? "error" : "speed");
+  if (options.scenes.empty()) options.scenes = defaults.scenes;
+  if (!isGiven(app, "--size")) options.technique.size = defaults.size;
+  if (!isGiven(app, "--samples")) options.technique.samples = defaults.samples;
+  if (!isGiven(app, "--photons")) options.technique.photons = defaults.photons;
+  if (!isGiven(app, "--reference-photons")) options.reference_photons = defaults.reference_photons;
 }
 
-/// One timed render. @return what computed it
-std::string measureRender(const Technique& technique, const SceneData& scene, const RenderSettings& settings,
-                          std::vector<Measurement>& measurements) {
-  const Camera camera = selectCamera(scene, "0");
-  resetPeakMemory();
-  const Clock::time_point start = Clock::now();
-  const RenderResult result = technique.render(scene, camera, settings, nullptr, &stopToken());
-  const double total_s = secondsSince(start);
-  if (stopToken().requested()) return "";  // half a measurement would be a wrong one
-  addMeasured(measurements, "total", "s", total_s);
-  for (const StageTime& stage : result.stats.stages) addStage(measurements, stage);
-  if (result.stats.rays > 0) {  // a frame of triangles has none of either
-    addMeasured(measurements, "rays", "1/s", static_cast<double>(result.stats.rays) / total_s);
-    addMeasured(measurements, "photons", "1/s", static_cast<double>(result.stats.photons) / total_s);
-  }
-  addMeasured(measurements, "peak memory", "MiB", readPeakMemory());
-  return result.image.metadata.at("device");
-}
-
-BenchResult benchScene(const std::string& source, const Technique& technique, const BenchOptions& options) {
-  TechniqueOptions technique_options = options.technique;
-  technique_options.name = technique.name;
-  RenderSettings settings = makeSettings(technique_options);
-  settings.layers = {"beauty"};
-  BenchResult result{source, technique.name, {}, {}};
-  const Clock::time_point start = Clock::now();
-  const SceneData scene = loadEditedScene({.scene = source}, 0.0F);
-  const double load_s = secondsSince(start);
-  ProgressBar bar(source + " " + technique.name);
-  const int run_count = options.warmup + options.repeats;
-  std::vector<Measurement> warmup;
-  for (int run = 0; run < run_count && !stopToken().requested(); ++run) {
-    bar.update(static_cast<double>(run) / run_count, run < options.warmup ? "warming up" : "measuring");
-    result.device = measureRender(technique, scene, settings, run < options.warmup ? warmup : result.measurements);
-  }
-  addMeasured(result.measurements, "load", "s", load_s);
-  if (technique.name == "reference" && !stopToken().requested())
-    for (Measurement& measurement : measureLightTracingShare(scene, options.repeats))
-      result.measurements.push_back(std::move(measurement));
-  return result;
+/// @throws UsageError for an option of the other kind of benchmark: it would do nothing
+void checkOptions(const BenchOptions& options, const CLI::App& app) {
+  if (!options.error && isGiven(app, "--reference-photons"))
+    throw UsageError("--reference-photons is for --error: speed is measured without a reference");
+  for (const char* name : {"--warmup", "--repeats"})
+    if (options.error && isGiven(app, name))
+      throw UsageError(fmt::format("{} is for speed: with --error each technique renders once", name));
+  if (options.error && options.reference_photons < 2)
+    throw UsageError("--reference-photons: expected 2 or more: the reference is two renders of half of them");
 }
 
 std::string readCpuModel() {
@@ -110,141 +82,138 @@ std::string readCpuModel() {
   return "unknown";
 }
 
-/// A rate of millions reads better with its prefix.
-std::string formatQuantity(double value, const std::string& unit) {
-  if (unit == "1/s" && value >= 1e6) return fmt::format("{:.3f} M/s", value * 1e-6);
-  if (unit == "1/s") return fmt::format("{:.3g} /s", value);
-  return fmt::format("{:.4g}{}{}", value, unit.empty() ? "" : " ", unit);
-}
-
-std::string formatResult(const BenchResult& result) {
-  std::size_t width = 0;
-  for (const Measurement& m : result.measurements) width = std::max(width, m.name.size());
-  std::string text = fmt::format("{} {} on {}\n", result.scene, result.technique, result.device);
-  for (const Measurement& m : result.measurements) {
-    text += fmt::format("  {:<{}} {:>16}", m.name, width, formatQuantity(computeMedian(m.values), m.unit));
-    if (m.values.size() > 1) text += fmt::format("  +- {:.1f} %", 100 * computeSpread(m.values));
-    text += '\n';
-  }
-  return text;
-}
-
-Json toJson(const BenchResult& result) {
-  Json measurements = Json::array();
-  for (const Measurement& measurement : result.measurements)
-    measurements.push_back({{"name", measurement.name},
-                            {"unit", measurement.unit},
-                            {"median", computeMedian(measurement.values)},
-                            {"spread", computeSpread(measurement.values)},
-                            {"values", measurement.values}});
-  return {{"scene", result.scene},
-          {"technique", result.technique},
-          {"device", result.device},
-          {"measurements", measurements}};
-}
-
-int threadCount(const BenchOptions& options) {
-  return options.technique.threads > 0 ? options.technique.threads
-                                       : static_cast<int>(std::thread::hardware_concurrency());
+int threadCount(const TechniqueOptions& options) {
+  return options.threads > 0 ? options.threads : static_cast<int>(std::thread::hardware_concurrency());
 }
 
 Json describeRun(const BenchOptions& options) {
   const TechniqueOptions& technique = options.technique;
-  return {{"version", version()},
-          {"cpu", readCpuModel()},
-          {"threads", threadCount(options)},
-          {"warmup", options.warmup},
-          {"repeats", options.repeats},
-          {"size", fmt::format("{}x{}", technique.size.width, technique.size.height)},
-          {"samples", technique.samples},
-          {"photons", technique.photons},
-          {"seed", technique.seed},
-          {"set", technique.parameters}};
+  Json run{{"version", version()}, {"cpu", readCpuModel()}, {"threads", threadCount(technique)}};
+  if (options.error) {
+    run["reference_photons"] = options.reference_photons;
+  } else {
+    run["warmup"] = options.warmup;
+    run["repeats"] = options.repeats;
+  }
+  run["size"] = fmt::format("{}x{}", technique.size.width, technique.size.height);
+  run["samples"] = technique.samples;
+  run["photons"] = technique.photons;
+  run["seed"] = technique.seed;
+  run["set"] = technique.parameters;
+  run["results"] = Json::array();
+  return run;
 }
 
-/// The one that was named, or all that have a use for the device.
-std::vector<const Technique*> chooseTechniques(const std::string& name, const std::string& device) {
-  if (!name.empty()) return {&findTechnique(name)};
+/// The one that was named, or all that have a use for the device; of errors, all that draw a caustic.
+std::vector<const Technique*> chooseTechniques(const BenchOptions& options) {
+  if (!options.only_technique.empty()) return {&findTechnique(options.only_technique)};
   std::vector<const Technique*> chosen;
   for (const Technique& technique : techniques())
-    if (takesDevice(technique, device)) chosen.push_back(&technique);
+    if (takesDevice(technique, options.technique.device) && (!options.error || technique.make_realtime != nullptr))
+      chosen.push_back(&technique);
   return chosen;
 }
 
-/// Nothing where technique and device were left to us and the machine has no device for the technique.
-std::optional<BenchResult> benchIfPossible(const std::string& scene, const Technique& technique,
-                                           const BenchOptions& options) {
-  try {
-    return benchScene(scene, technique, options);
-  } catch (const DeviceError& error) {
-    if (!options.only_technique.empty() || options.technique.device != "auto") throw;
-    writeStderr(fmt::format("warning: {} is left out: {}", technique.name, error.what()));
-    return std::nullopt;
+/// Calls `measure(technique)` for each technique. Where technique and device were left to us, those that the machine
+/// has no device for are left out.
+template <class Measure>
+void forEachTechnique(const BenchOptions& options, const Measure& measure) {
+  for (const Technique* technique : chooseTechniques(options)) {
+    try {
+      measure(*technique);
+    } catch (const DeviceError& error) {
+      if (!options.only_technique.empty() || options.technique.device != "auto") throw;
+      warnOnce(fmt::format("{} is left out: {}", technique->name, error.what()));
+    }
   }
 }
 
-ExitCode runBench(BenchOptions options) {
-  if (options.scenes.empty()) options.scenes = defaultList()["scenes"].get<std::vector<std::string>>();
-  Json run = describeRun(options);
-  run["results"] = Json::array();
+void benchSpeed(const BenchOptions& options, Json& results) {
   if (!options.json)
     writeStdout(fmt::format("nephroid {}, {}, {} threads, median and half range of {}\n", version(), readCpuModel(),
-                            threadCount(options), options.repeats));
+                            threadCount(options.technique), options.repeats));
+  const SpeedOptions speed{options.technique, options.warmup, options.repeats};
+  for (const std::string& scene : options.scenes)
+    forEachTechnique(options, [&](const Technique& technique) {
+      if (stopToken().requested()) return;
+      const SpeedResult result = measureSpeed(scene, technique, speed);
+      if (stopToken().requested()) return;
+      results.push_back(speedToJson(result));
+      if (!options.json) writeStdout(formatSpeed(result));
+    });
+}
+
+void benchError(const BenchOptions& options, Json& results) {
+  const ErrorOptions error{options.technique, options.reference_photons};
+  if (!options.json) writeStdout(formatErrorHeader(options.scenes, error));
+  const auto add = [&](const ErrorResult& result) {
+    results.push_back(errorToJson(result));
+    if (!options.json) writeStdout(formatErrorRow(options.scenes, result));
+  };
   for (const std::string& scene : options.scenes) {
-    for (const Technique* technique : chooseTechniques(options.only_technique, options.technique.device)) {
-      const std::optional<BenchResult> result = benchIfPossible(scene, *technique, options);
-      if (stopToken().requested()) break;
-      if (!result) continue;
-      if (options.json)
-        run["results"].push_back(toJson(*result));
-      else
-        writeStdout(formatResult(*result));
-    }
+    const CausticReference reference = renderCausticReference(scene, error);
+    add(measureNoise(scene, reference));
+    forEachTechnique(options,
+                     [&](const Technique& technique) { add(measureError(scene, technique, reference, error)); });
+  }
+}
+
+ExitCode runBench(BenchOptions options, const CLI::App& app) {
+  checkOptions(options, app);
+  completeOptions(options, app);
+  Json run = describeRun(options);
+  try {
+    (options.error ? benchError : benchSpeed)(options, run["results"]);
+  } catch (const InterruptedError&) {  // what was measured before is whole, and is told
   }
   if (options.json) writeStdout(run.dump(2) + "\n");
   return stopToken().requested() ? ExitCode::kInterrupted : ExitCode::kDone;
 }
 
-/// The options' defaults are those of the list, so that --help and the list cannot disagree.
-void applyListDefaults(TechniqueOptions& options, const Json& list) {
-  options.size = parseSize("bench/scenes.json", list["size"].get<std::string>());
-  options.samples = list["samples"].get<std::uint64_t>();
-  options.photons = parseCount("bench/scenes.json", list["photons"].get<std::string>());
+/// What --help says of the defaults of both kinds.
+TechniqueDefaults describeBothDefaults() {
+  TechniqueOptions speed, error;
+  const auto apply = [](TechniqueOptions& options, const Defaults& defaults) {
+    options.size = defaults.size, options.samples = defaults.samples, options.photons = defaults.photons;
+    return describeDefaults(options);
+  };
+  const TechniqueDefaults a = apply(speed, readDefaults("speed")), b = apply(error, readDefaults("error"));
+  const auto both = [](const std::string& first, const std::string& second) {
+    return fmt::format("{}, with --error {}", first, second);
+  };
+  return {both("all", "all that draw caustics in real time"), both(a.size, b.size), both(a.photons, b.photons),
+          both(a.samples, b.samples)};
 }
 
 }  // namespace
 
-double computeMedian(std::vector<double> values) {
-  if (values.empty()) return 0;
-  std::sort(values.begin(), values.end());
-  const std::size_t middle = values.size() / 2;
-  return values.size() % 2 == 1 ? values[middle] : 0.5 * (values[middle - 1] + values[middle]);
-}
-
-double computeSpread(const std::vector<double>& values) {
-  const double median = computeMedian(values);
-  if (values.size() < 2 || median == 0) return 0;
-  const auto [lowest, highest] = std::minmax_element(values.begin(), values.end());
-  return 0.5 * (*highest - *lowest) / median;
-}
-
 Command addBenchCommand(CLI::App& root) {
   const auto options = std::make_shared<BenchOptions>();
-  const Json list = defaultList();
-  applyListDefaults(options->technique, list);
-  CLI::App* app = addCommand(root, "bench", "Measure speed and memory of each technique on each scene.", kExamples);
-  addArguments(*app, "SCENES", options->scenes, "SCENE",
-               {"Scenes, as for render.",
-                fmt::format("{}", fmt::join(list["scenes"].get<std::vector<std::string>>(), " ")), "", ""});
-  addTechniqueOptions(*app, options->technique, options->only_technique, "all");
+  const Defaults speed = readDefaults("speed"), error = readDefaults("error");
+  options->reference_photons = error.reference_photons;
+  CLI::App* app = addCommand(root, "bench",
+                             "Measure speed and memory of each technique on each scene, or its error against the "
+                             "reference.",
+                             kExamples);
+  addArguments(
+      *app, "SCENES", options->scenes, "SCENE",
+      {"Scenes, as for render.",
+       fmt::format("{}; with --error {}", fmt::join(speed.scenes, " "), fmt::join(error.scenes, " ")), "", ""});
+  addTechniqueOptions(*app, options->technique, options->only_technique, describeBothDefaults());
   addValue(*app, "--warmup", options->warmup, "N",
            {"Renders before the measured ones.", "1", fmt::format("0 to {}", kMaxRepeats), ""},
            checkNumber(0, kMaxRepeats));
   addValue(*app, "--repeats", options->repeats, "N",
            {"Measured renders per scene and technique.", "5", fmt::format("1 to {}", kMaxRepeats), ""},
            checkNumber(1, kMaxRepeats));
+  addSwitch(*app, "--error", options->error,
+            "Instead of speed, tell how far the caustics of each technique are from the reference's: relMSE, FLIP, "
+            "energy, and the share of flux that was lost.");
+  addCount(*app, "--reference-photons", options->reference_photons,
+           {"With --error: photons of the reference; the table shows what their noise makes of each figure.",
+            fmt::format("{}", error.reference_photons), "2 to 9e15", "photons"});
   addSwitch(*app, "--json", options->json, "Print JSON, with every value.");
-  return {app, [options] { return runBench(*options); }};
+  return {app, [options, app] { return runBench(*options, *app); }};
 }
 
 }  // namespace nephroid::cli

@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <span>
 
-#include "app/cli/bench.h"
+#include "app/cli/bench_speed.h"
 #include "scene/edit.h"
 #include "techniques/reference/light_tracing_bench.h"
 

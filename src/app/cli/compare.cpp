@@ -5,11 +5,11 @@
 #include <nlohmann/json.hpp>
 
 #include "app/cli/command.h"
+#include "app/cli/comparison.h"
 #include "app/cli/options.h"
 #include "app/cli/terminal.h"
 #include "core/file.h"
-#include "core/image/image_io.h"
-#include "metrics/metrics.h"
+#include "metrics/report.h"
 
 namespace nephroid::cli {
 namespace {
@@ -17,119 +17,13 @@ namespace {
 constexpr const char* kExamples = R"(Examples:
   nephroid compare out.exr reference.exr --layer caustic
   nephroid compare out.exr truth.exr --layer direct+caustic --reference-layer beauty --mask floor.png
-  nephroid compare a.png b.png --metric rmse,mape --json)";
+  nephroid compare a.png b.png --metric rmse,mape --json
+  nephroid compare out.exr reference.exr --layer caustic --html report.html)";
 
-struct CompareOptions {
-  std::string image, reference, layer, reference_layer, mask, metrics;
+struct OutputOptions {
+  std::string html;
   bool json = false;
 };
-
-struct Comparison {
-  std::string layer, reference_layer;
-  std::size_t pixel_count = 0;  ///< those that were compared
-  NotFinitePixels not_finite;   ///< those that were left out
-  dvec3 image_mean{0}, reference_mean{0};
-  std::vector<std::pair<std::string, double>> values;
-};
-
-/// A picture of any format as layers; what is not EXR is one layer, `beauty`.
-LayeredImage readLayers(const std::string& path) {
-  constexpr std::array<std::byte, 4> kExrMagic{std::byte{0x76}, std::byte{0x2f}, std::byte{0x31}, std::byte{0x01}};
-  const std::vector<std::byte> bytes = readFile(path);
-  if (bytes.size() >= kExrMagic.size() && std::equal(kExrMagic.begin(), kExrMagic.end(), bytes.begin()))
-    return readExr(path);
-  Image image = toLinear(decodeImage(bytes, path));
-  LayeredImage layered{.width = image.width, .height = image.height};
-  layered.layers.push_back({"beauty", std::move(image)});
-  return layered;
-}
-
-/// `beauty` if both have it, else the first layer that both have.
-std::string chooseLayer(const LayeredImage& image, const LayeredImage& reference, const CompareOptions& options) {
-  if (!options.layer.empty()) return options.layer;
-  if (image.find("beauty") != nullptr && reference.find("beauty") != nullptr) return "beauty";
-  for (const Layer& layer : image.layers)
-    if (reference.find(layer.name) != nullptr) return layer.name;
-  throw InputError(fmt::format("{} and {} have no layer in common; choose with --layer and --reference-layer",
-                               options.image, options.reference));
-}
-
-/// evaluateLayerExpression, with the file's name in its message.
-Image evaluateLayer(const LayeredImage& image, const std::string& expression, const std::string& path) {
-  try {
-    return evaluateLayerExpression(image, expression);
-  } catch (const InputError& error) {
-    throw InputError(fmt::format("{}: {}", path, error.what()));
-  }
-}
-
-void checkSameSize(const Image& image, const std::string& path, int width, int height, const std::string& reference) {
-  if (image.width == width && image.height == height) return;
-  throw InputError(fmt::format("{} is {}x{} px, but {} is {}x{} px; only pictures of one size can be compared", path,
-                               image.width, image.height, reference, width, height));
-}
-
-/// excludeNotFinite, said on stderr, with the files' names in its messages.
-NotFinitePixels leaveOutNotFinite(const Image& image, const Image& reference, std::vector<std::uint8_t>& mask,
-                                  const CompareOptions& options) {
-  try {
-    const NotFinitePixels found = excludeNotFinite(image, reference, mask);
-    const auto warn = [](const std::string& path, std::size_t count) {
-      if (count > 0) warnOnce(fmt::format("{}: pixels that are NaN or infinite, left out: {}", path, count));
-    };
-    warn(options.image, found.in_image);
-    warn(options.reference, found.in_reference);
-    return found;
-  } catch (const InputError& error) {
-    throw InputError(fmt::format("{} and {}: {}", options.image, options.reference, error.what()));
-  }
-}
-
-/// 255 where a pixel counts, 0 elsewhere.
-std::vector<std::uint8_t> loadMask(const std::string& path, const Image& image, const std::string& image_path) {
-  std::vector<std::uint8_t> mask(static_cast<std::size_t>(image.width) * image.height, 255);
-  if (path.empty()) return mask;
-  const DecodedImage decoded = loadImage(path);
-  const auto* bytes = std::get_if<ByteImage>(&decoded);
-  if (bytes == nullptr) throw InputError(fmt::format("{}: is a float picture; a mask is an 8-bit PNG", path));
-  checkSameSize(image, image_path, bytes->width, bytes->height, path);
-  for (std::size_t i = 0; i < mask.size(); ++i) mask[i] = bytes->pixels[4 * i] == 255 ? 255 : 0;
-  if (std::count(mask.begin(), mask.end(), 255) == 0)
-    throw InputError(fmt::format("{}: no pixel has the value 255; those are the ones that count", path));
-  return mask;
-}
-
-std::vector<const Metric*> chooseMetrics(const std::string& names) {
-  std::vector<const Metric*> chosen;
-  for (const std::string& name : splitList(names)) chosen.push_back(&findMetric(name));
-  if (chosen.empty())
-    for (const Metric& metric : metrics()) chosen.push_back(&metric);
-  return chosen;
-}
-
-Comparison comparePictures(const CompareOptions& options) {
-  const std::vector<const Metric*> chosen = chooseMetrics(options.metrics);
-  const LayeredImage image_file = readLayers(options.image);
-  const LayeredImage reference_file = readLayers(options.reference);
-  Comparison comparison;
-  comparison.layer = chooseLayer(image_file, reference_file, options);
-  comparison.reference_layer = options.reference_layer.empty() ? comparison.layer : options.reference_layer;
-  const Image image = evaluateLayer(image_file, comparison.layer, options.image);
-  const Image reference = evaluateLayer(reference_file, comparison.reference_layer, options.reference);
-  checkSameSize(image, options.image, reference.width, reference.height, options.reference);
-  if (image.channels != reference.channels)
-    throw InputError(fmt::format("{} has {} channels in '{}', but {} has {} in '{}'; compare like with like",
-                                 options.image, image.channels, comparison.layer, options.reference, reference.channels,
-                                 comparison.reference_layer));
-  std::vector<std::uint8_t> mask = loadMask(options.mask, image, options.image);
-  comparison.not_finite = leaveOutNotFinite(image, reference, mask, options);
-  comparison.pixel_count = static_cast<std::size_t>(std::count(mask.begin(), mask.end(), 255));
-  comparison.image_mean = maskedMean(image, mask);
-  comparison.reference_mean = maskedMean(reference, mask);
-  for (const Metric* metric : chosen)
-    comparison.values.emplace_back(metric->name, metric->compute(image, reference, mask));
-  return comparison;
-}
 
 dvec3 meanRatio(const Comparison& comparison) {
   dvec3 ratio(0);
@@ -137,10 +31,16 @@ dvec3 meanRatio(const Comparison& comparison) {
   return ratio;
 }
 
-std::string formatComparison(const Comparison& comparison) {
-  const auto row = [](const char* name, const dvec3& v) {
-    return fmt::format("{:<16} {:>12.6g} {:>12.6g} {:>12.6g}\n", name, v.x, v.y, v.z);
-  };
+const char* flipName(const Viewing& viewing) { return viewing.display_referred ? "LDR" : "HDR"; }
+
+/// Which FLIP it is. Other metrics are the same however pictures are looked at.
+std::string describeMetric(const std::string& name, const Viewing& viewing) {
+  if (name != "flip") return "";
+  return fmt::format("  {}, {} pixels per degree", flipName(viewing), viewing.pixels_per_degree);
+}
+
+/// Which layers, and how many of their pixels.
+std::string summarise(const Comparison& comparison) {
   std::string text = fmt::format("layer {}", comparison.layer);
   if (comparison.reference_layer != comparison.layer) text += fmt::format(" against {}", comparison.reference_layer);
   text += fmt::format(", {} pixels", comparison.pixel_count);
@@ -148,10 +48,19 @@ std::string formatComparison(const Comparison& comparison) {
   if (bad.in_image + bad.in_reference > 0)
     text +=
         fmt::format(", left out as not finite: {} of the image, {} of the reference", bad.in_image, bad.in_reference);
+  return text;
+}
+
+std::string formatComparison(const Comparison& comparison) {
+  const auto row = [](const char* name, const dvec3& v) {
+    return fmt::format("{:<16} {:>12.6g} {:>12.6g} {:>12.6g}\n", name, v.x, v.y, v.z);
+  };
+  std::string text = summarise(comparison);
   text += fmt::format("\n{:<16} {:>12} {:>12} {:>12}\n", "", "R", "G", "B");
   text += row("mean", comparison.image_mean) + row("reference mean", comparison.reference_mean);
   text += row("ratio", meanRatio(comparison));
-  for (const auto& [name, value] : comparison.values) text += fmt::format("{:<16} {:>12.6g}\n", name, value);
+  for (const auto& [name, value] : comparison.values)
+    text += fmt::format("{:<16} {:>12.6g}{}\n", name, value, describeMetric(name, comparison.viewing));
   return text;
 }
 
@@ -171,16 +80,35 @@ std::string formatComparisonJson(const CompareOptions& options, const Comparison
       {"mean", triple(comparison.image_mean)},
       {"reference_mean", triple(comparison.reference_mean)},
       {"ratio", triple(meanRatio(comparison))},
-      {"metrics", values}};
+      {"metrics", values},
+      {"flip", {{"kind", flipName(comparison.viewing)}, {"pixels_per_degree", comparison.viewing.pixels_per_degree}}}};
   // Names of files need not be UTF-8, which JSON must be.
   return json.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace) + "\n";
 }
 
-ExitCode runCompare(const CompareOptions& options) {
+void writeReport(const std::string& path, const CompareOptions& options, const Comparison& comparison) {
+  const std::string kind = fmt::format("; flip: {}, {} pixels per degree", flipName(comparison.viewing),
+                                       comparison.viewing.pixels_per_degree);
+  const std::string page =
+      makeReport({.image = {options.image, comparison.image, comparison.image_metadata},
+                  .reference = {options.reference, comparison.reference, comparison.reference_metadata},
+                  .mask = comparison.mask,
+                  .viewing = comparison.viewing,
+                  .summary = summarise(comparison) + kind,
+                  .image_mean = comparison.image_mean,
+                  .reference_mean = comparison.reference_mean,
+                  .figures = comparison.values});
+  writeFileAtomically(path, std::as_bytes(std::span(page)));
+  writeStderr("wrote " + path);
+}
+
+ExitCode runCompare(const CompareOptions& options, const OutputOptions& output) {
   if (options.image.empty() || options.reference.empty())
     throw UsageError("compare: two pictures are needed: nephroid compare IMAGE REFERENCE");
+  if (!output.html.empty()) checkWritable(output.html);
   const Comparison comparison = comparePictures(options);
-  writeStdout(options.json ? formatComparisonJson(options, comparison) : formatComparison(comparison));
+  if (!output.html.empty()) writeReport(output.html, options, comparison);
+  writeStdout(output.json ? formatComparisonJson(options, comparison) : formatComparison(comparison));
   return ExitCode::kDone;
 }
 
@@ -201,6 +129,7 @@ std::string describeMetrics() {
 
 Command addCompareCommand(CLI::App& root) {
   const auto options = std::make_shared<CompareOptions>();
+  const auto output = std::make_shared<OutputOptions>();
   CLI::App* app = addCommand(root, "compare", "Tell how far a picture is from its reference.", describeMetrics());
   addValue(*app, "IMAGE", options->image, "IMAGE", {"The picture: EXR, PNG, JPEG, WebP or HDR.", "", "", ""});
   addValue(*app, "REFERENCE", options->reference, "REFERENCE", {"What it should look like; same size.", "", "", ""});
@@ -211,8 +140,17 @@ Command addCompareCommand(CLI::App& root) {
   addValue(*app, "--mask", options->mask, "FILE",
            {"A PNG of the same size; pixels of value 255 count.", "all", "", ""});
   addValue(*app, "--metric", options->metrics, "LIST", {"Metrics, separated by commas.", "all", metricNames(), ""});
-  addSwitch(*app, "--json", options->json, "Print JSON.");
-  return {app, [options] { return runCompare(*options); }};
+  addValue(*app, "--pixels-per-degree", options->pixels_per_degree, "P",
+           {"For flip: how many pixels the eye that looks at the pictures has in a degree; more are further away.",
+            fmt::format("{}", kDefaultPixelsPerDegree),
+            fmt::format("{} to {}", kMinPixelsPerDegree, kMaxPixelsPerDegree), "px/deg"},
+           checkNumber(double{kMinPixelsPerDegree}, double{kMaxPixelsPerDegree}));
+  addValue(*app, "--html", output->html, "FILE",
+           {"Also writes a page to look at: both pictures under a divider, maps of the error, figures, metadata. It is "
+            "one file that needs no network.",
+            "none", "", ""});
+  addSwitch(*app, "--json", output->json, "Print JSON.");
+  return {app, [options, output] { return runCompare(*options, *output); }};
 }
 
 }  // namespace nephroid::cli

@@ -148,6 +148,8 @@ void addCount(CLI::App& app, const std::string& flags, std::uint64_t& target, co
       app, flags, [&target, name](const std::string& value) { target = parseCount(name, value); }, "N", text);
 }
 
+bool isGiven(const CLI::App& app, const std::string& name) { return app.count(name) > 0; }
+
 std::uint64_t parseCount(std::string_view name, const std::string& text) {
   // Every whole number up to here is exact in the double that "1e6" and "2.5M" are read as.
   constexpr double kMaxCount = 9007199254740992.0;

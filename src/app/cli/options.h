@@ -59,6 +59,9 @@ void addArguments(CLI::App& app, const std::string& name, std::vector<std::strin
 
 void addSwitch(CLI::App& app, const std::string& flags, bool& target, const std::string& text);
 
+/// Whether the command line or the state file sets the option, once they are read. @param name  with its dashes
+bool isGiven(const CLI::App& app, const std::string& name);
+
 /// A count such as 64, 1e6, 500k or 2.5M.
 void addCount(CLI::App& app, const std::string& flags, std::uint64_t& target, const OptionText& text);
 

@@ -224,7 +224,7 @@ Command addRenderCommand(CLI::App& root) {
   addSceneOptions(*app, options->scene);
   addCameraOption(*app, options->camera);
   addOutputOptions(*app, *options);
-  addTechniqueOptions(*app, options->technique, options->technique.name, options->technique.name);
+  addTechniqueOptions(*app, options->technique, options->technique.name, describeDefaults(options->technique));
   addAnimationOptions(*app, *options);
   return {app, [app, options] {
             if (!options->scene.state.empty()) applyStateFile(*app, options->scene.state);

@@ -19,10 +19,16 @@ std::string describeBudget(std::uint64_t budget) {
 
 }  // namespace
 
-void addTechniqueOptions(CLI::App& app, TechniqueOptions& options, std::string& name, const std::string& default_name) {
+TechniqueDefaults describeDefaults(const TechniqueOptions& options) {
+  return {options.name, fmt::format("{}x{}", options.size.width, options.size.height), describeBudget(options.photons),
+          describeBudget(options.samples)};
+}
+
+void addTechniqueOptions(CLI::App& app, TechniqueOptions& options, std::string& name,
+                         const TechniqueDefaults& defaults) {
   beginGroup(app, "Technique");
   addValue(app, "--technique", name, "NAME",
-           {"How to draw; 'nephroid techniques' describes each.", default_name, joinTechniqueNames(), ""});
+           {"How to draw; 'nephroid techniques' describes each.", defaults.name, joinTechniqueNames(), ""});
   addList(app, "--set", options.parameters, "KEY=VALUE",
           {"A parameter of the technique; 'nephroid techniques' lists them.", "none", "", ""});
   addValue(app, "--device", options.device, "DEVICE",
@@ -31,13 +37,11 @@ void addTechniqueOptions(CLI::App& app, TechniqueOptions& options, std::string& 
             "auto", "auto|cpu|N", ""});
   beginGroup(app, "Budget");
   addParsed(app, "--size", [&options](const std::string& text) { options.size = parseSize("--size", text); }, "WxH",
-            {"Size of the picture.", fmt::format("{}x{}", options.size.width, options.size.height),
-             fmt::format("1x1 to {0}x{0}", kMaxSide), "px"});
+            {"Size of the picture.", defaults.size, fmt::format("1x1 to {0}x{0}", kMaxSide), "px"});
   addCount(app, "--photons", options.photons,
-           {"Photons emitted, over all lights and bands; 500k, 2M and 1e6 are understood.",
-            describeBudget(options.photons), "0 to 9e15", "photons"});
-  addCount(app, "--samples", options.samples,
-           {"Camera samples.", describeBudget(options.samples), "0 to 9e15", "per pixel"});
+           {"Photons emitted, over all lights and bands; 500k, 2M and 1e6 are understood.", defaults.photons,
+            "0 to 9e15", "photons"});
+  addCount(app, "--samples", options.samples, {"Camera samples.", defaults.samples, "0 to 9e15", "per pixel"});
   addValue(
       app, "--seconds", options.seconds, "S",
       {"Ends a progressive render after this time; the picture then varies between runs.", "none", "0.001 to 1e7", "s"},

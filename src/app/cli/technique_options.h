@@ -20,10 +20,17 @@ struct TechniqueOptions {
   std::vector<std::string> parameters;  ///< "key=value"
 };
 
-/// @param options       their current values are the defaults that --help tells
-/// @param name          receives --technique
-/// @param default_name  what --help says of the default
-void addTechniqueOptions(CLI::App& app, TechniqueOptions& options, std::string& name, const std::string& default_name);
+/// What --help says of the defaults that depend on the subcommand.
+struct TechniqueDefaults {
+  std::string name, size, photons, samples;
+};
+
+/// The values that `options` have.
+TechniqueDefaults describeDefaults(const TechniqueOptions& options);
+
+/// @param name  receives --technique
+void addTechniqueOptions(CLI::App& app, TechniqueOptions& options, std::string& name,
+                         const TechniqueDefaults& defaults);
 
 /// Everything but the layers.
 /// @throws UsageError for an unknown technique, parameter or value, or a device that the technique does not take

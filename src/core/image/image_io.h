@@ -39,7 +39,10 @@ LayeredImage readExr(const std::filesystem::path& path);
 /// @throws ResourceError
 void writeExr(const std::filesystem::path& path, const LayeredImage& image, bool half = false);
 
-/// 8-bit RGB PNG of display-referred values in [0, 1] that are already sRGB-coded. Metadata as tEXt chunks. Atomic.
+/// 8-bit RGB PNG of display-referred values in [0, 1] that are already sRGB-coded. Metadata as tEXt chunks.
+/// @throws ResourceError
+std::vector<std::byte> encodePng(const Image& display, const std::map<std::string, std::string>& metadata = {});
+/// The same as a file. Atomic.
 /// @throws ResourceError
 void writePng(const std::filesystem::path& path, const Image& display,
               const std::map<std::string, std::string>& metadata = {});

@@ -19,15 +19,18 @@ NEPHROID_CONST float kBlackOctaves = 20.0f;
 /// below 0.99 · count.
 NEPHROID_FN uint highlightRank(uint count) { return count - count / 100u; }
 
+/// Scales the argument of the filmic curve so that middle grey stays middle grey and switching the curve on does not
+/// change exposure: 2.0726 x² − 0.0762 x − 0.0252 = 0 gives the x = 0.13017 that the curve maps to 0.18; hence
+/// 0.13017 / 0.18.
+NEPHROID_CONST float kFilmicCurveScale = 0.72316f;
+
 /// Narkowicz' rational fit of the ACES curve (K. Narkowicz, "ACES Filmic Tone Mapping Curve", 2015):
-/// x (2.51 x + 0.03) / (x (2.43 x + 0.59) + 0.14), clamped to 1.
-/// The argument is scaled so that middle grey stays middle grey and switching the curve on does not change exposure:
-/// 2.0726 x² − 0.0762 x − 0.0252 = 0 gives the x = 0.13017 that the curve maps to 0.18; hence 0.13017 / 0.18.
+/// x (2.51 x + 0.03) / (x (2.43 x + 0.59) + 0.14) of x = kFilmicCurveScale · linear, clamped to 1.
 ///
 /// @param linear  >= 0
 NEPHROID_FN float applyFilmicCurve(float linear) {
   // Far into the clamp, and its square is still finite.
-  float x = min(linear * 0.72316f, 1e4f);
+  float x = min(linear * kFilmicCurveScale, 1e4f);
   return min(x * (2.51f * x + 0.03f) / (x * (2.43f * x + 0.59f) + 0.14f), 1.0f);
 }
 

@@ -136,22 +136,26 @@ PngContent prepareContent(const Image& display, const std::map<std::string, std:
 
 }  // namespace
 
-void writePng(const std::filesystem::path& path, const Image& display,
-              const std::map<std::string, std::string>& metadata) {
+std::vector<std::byte> encodePng(const Image& display, const std::map<std::string, std::string>& metadata) {
   PngSink sink;
   try {
     PngContent content = prepareContent(display, metadata);
     const PngWriter writer(&sink);
     if (!writePngStream(writer.png, writer.info, &sink, &content) && !sink.out_of_memory)
-      throw InternalError(fmt::format("{}: libpng refuses to encode {} x {} pixels: {}", path.string(), display.width,
-                                      display.height, sink.error));
+      throw InternalError(
+          fmt::format("libpng refuses to encode {} x {} pixels: {}", display.width, display.height, sink.error));
   } catch (const std::bad_alloc&) {
     sink.out_of_memory = true;
   }
   if (sink.out_of_memory)
-    throw ResourceError(fmt::format("{}: not enough memory to encode {} x {} pixels; ask for a smaller picture",
-                                    path.string(), display.width, display.height));
-  writeFileAtomically(path, sink.bytes);
+    throw ResourceError(fmt::format("not enough memory to encode {} x {} pixels as PNG; ask for a smaller picture",
+                                    display.width, display.height));
+  return std::move(sink.bytes);
+}
+
+void writePng(const std::filesystem::path& path, const Image& display,
+              const std::map<std::string, std::string>& metadata) {
+  writeFileAtomically(path, encodePng(display, metadata));
 }
 
 }  // namespace nephroid

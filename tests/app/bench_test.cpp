@@ -1,0 +1,97 @@
+// `nephroid bench` as a process.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <nlohmann/json.hpp>
+
+#include "app/process.h"
+
+namespace nephroid::test {
+namespace {
+
+using ::testing::Contains;
+using ::testing::HasSubstr;
+using ::testing::StartsWith;
+
+TEST(Bench, ReportsMedianAndSpreadAsJson) {
+  const ProcessResult result =
+      runNephroid({"bench", "builtin:ring", "--technique", "reference", "--repeats", "2", "--warmup", "0", "--size",
+                   "16x12", "--samples", "1", "--photons", "1000", "--json"});
+  ASSERT_EQ(result.exit_code, 0) << result.err;
+  const nlohmann::json json = nlohmann::json::parse(result.out);
+  EXPECT_EQ(json["results"][0]["scene"], "builtin:ring");
+  std::vector<std::string> names;
+  for (const auto& measurement : json["results"][0]["measurements"]) {
+    names.push_back(measurement["name"]);
+    EXPECT_GT(measurement["median"].get<double>(), 0) << names.back();
+  }
+  EXPECT_THAT(names, Contains("rays"));
+  EXPECT_THAT(names, Contains("peak memory"));
+}
+
+/// The reference against itself, with random numbers of its own: what needs no device.
+std::vector<std::string> errorArguments(std::vector<std::string> more) {
+  std::vector<std::string> arguments{"bench",     "--error",   "builtin:slab", "--technique",
+                                     "reference", "--size",    "24x18",        "--reference-photons",
+                                     "100k",      "--photons", "100k"};
+  arguments.insert(arguments.end(), more.begin(), more.end());
+  return arguments;
+}
+
+TEST(BenchError, OfTheReferenceItselfIsNoise) {
+  const ProcessResult result = runNephroid(errorArguments({"--json"}));
+  ASSERT_EQ(result.exit_code, 0) << result.err;
+  const nlohmann::json json = nlohmann::json::parse(result.out);
+  EXPECT_EQ(json["reference_photons"], 100'000);
+  EXPECT_EQ(json["size"], "24x18");
+  ASSERT_EQ(json["results"].size(), 2U);
+  const nlohmann::json &noise = json["results"][0], &other = json["results"][1];
+  EXPECT_EQ(noise["technique"], "reference/2");
+  EXPECT_EQ(other["technique"], "reference");
+  for (const nlohmann::json& row : json["results"]) {
+    EXPECT_EQ(row["scene"], "builtin:slab");
+    EXPECT_NEAR(row["energy"].get<double>(), 1.0, 0.02);
+    EXPECT_GT(row["flip"].get<double>(), 0.0);
+    EXPECT_LT(row["flip"].get<double>(), 0.1);
+    EXPECT_LT(row["lost"].get<double>(), 0.01);
+  }
+  // The variance of a half and that of the mean of two: three times that of the mean for independent photons, about
+  // twice for those that are spread evenly. It is 1 if random numbers are the same as a half's.
+  const double ratio = other["relmse"].get<double>() / noise["relmse"].get<double>();
+  EXPECT_GT(ratio, 1.4);
+  EXPECT_LT(ratio, 4.5);
+}
+
+TEST(BenchError, PrintsATableOfSceneAndTechnique) {
+  const ProcessResult result = runNephroid(errorArguments({}));
+  ASSERT_EQ(result.exit_code, 0) << result.err;
+  EXPECT_THAT(result.out, StartsWith("caustic at 24x18 against the reference's of 0.1 M photons\n"));
+  EXPECT_THAT(
+      result.out,
+      HasSubstr("\nscene         technique        relMSE     FLIP   energy      lost\nbuiltin:slab  reference/2 "));
+  EXPECT_THAT(result.out, HasSubstr("\nbuiltin:slab  reference  "));
+}
+
+TEST(BenchError, TellsTheShareThatTheLedgerHasAsLost) {
+  // One bounce is what a photon needs to enter glass: all that does is lost.
+  const ProcessResult result =
+      runNephroid({"bench", "--error", "builtin:slab", "--technique", "reference", "--set", "max-bounces=1", "--size",
+                   "8x6", "--reference-photons", "20k", "--photons", "20k", "--json"});
+  ASSERT_EQ(result.exit_code, 0) << result.err;
+  const nlohmann::json row = nlohmann::json::parse(result.out)["results"][1];
+  EXPECT_GT(row["lost"].get<double>(), 0.8);
+  EXPECT_NEAR(row["lost_by_reason"]["bounce limit"].get<double>(), row["lost"].get<double>(), 1e-6);
+  EXPECT_LT(row["energy"].get<double>(), 0.2);
+}
+
+TEST(BenchError, RefusesOptionsThatWouldDoNothing) {
+  EXPECT_EQ(runNephroid(errorArguments({"--repeats", "2"})).exit_code, 2);
+  EXPECT_EQ(runNephroid(errorArguments({"--warmup", "2"})).exit_code, 2);
+  EXPECT_EQ(runNephroid({"bench", "--error", "builtin:ring", "--reference-photons", "1"}).exit_code, 2);
+  const ProcessResult result = runNephroid({"bench", "builtin:ring", "--reference-photons", "100"});
+  EXPECT_EQ(result.exit_code, 2);
+  EXPECT_THAT(result.err, HasSubstr("--reference-photons is for --error"));
+}
+
+}  // namespace
+}  // namespace nephroid::test
