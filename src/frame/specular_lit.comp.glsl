@@ -14,6 +14,8 @@
 #include "frame/specular_others.glsl"
 #define NEPHROID_SKY_BINDINGS 14
 #include "frame/sky.glsl"
+#define NEPHROID_RECEIVER_BINDINGS 17
+#include "frame/receiver_map.glsl"
 
 layout(local_size_x = 64) in;
 layout(set = 0, binding = 16, rgba32f) uniform image2D specular_image;  // sum over samples, W/m²/sr
@@ -86,7 +88,8 @@ Surface surfaceOf(LitTriangle lit, vec3 place) {
 }
 
 /// What a surface sends back along the ray that meets it.
-vec3 radianceOf(LitTriangle lit, vec3 place, vec3 dir) {
+/// @param weight  times which the pixel shows it
+vec3 radianceOf(LitTriangle lit, vec3 place, vec3 dir, uvec2 pixel, vec3 weight) {
   Surface s = surfaceOf(lit, place);
   Coordinates at = Coordinates(vec2[2](vec2(0.0), vec2(0.0)), vec4(1.0));
   if (kSceneHasTextures) {
@@ -103,7 +106,9 @@ vec3 radianceOf(LitTriangle lit, vec3 place, vec3 dir) {
   }
   // Near a silhouette the interpolated normal may look away from the path: the true one cannot.
   if (dot(s.shading, -dir) <= 1e-4) s.shading = s.geometric;
-  return radiance + lightFromAll(push.light_count, s, m, -dir, push.specular_alpha);
+  vec3 caustic = causticFrom(s, m, -dir, push.specular_alpha);
+  addToSpecularCaustic(ivec2(pixel), weight * caustic);
+  return radiance + caustic + lightFromAll(push.light_count, s, m, -dir, push.specular_alpha);
 }
 
 void showCell(uvec2 cell) {
@@ -124,7 +129,7 @@ void showCell(uvec2 cell) {
     } else {
       vec3 dir = valueAt(e.dir, at).xyz;
       if (kSceneHasMetal || kSceneHasGloss) dir = normalize(dir);
-      radiance = radianceOf(lit, place, dir);
+      radiance = radianceOf(lit, place, dir, pixel, weight.xyz);
     }
     imageStore(specular_image, ivec2(pixel), imageLoad(specular_image, ivec2(pixel)) + vec4(weight.xyz * radiance, 0.0));
   } while (nextPixel(pixels, pixel));
