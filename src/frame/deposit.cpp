@@ -12,20 +12,24 @@ namespace {
 /// Groups of threads that go through the list of what is left.
 constexpr std::uint32_t kRestGroups = 256;
 
-gpu::ComputeDesc describe(gpu::Spirv shader, Reconstruction reconstruction, std::uint32_t views, bool directions) {
+gpu::ComputeDesc describe(gpu::Spirv shader, Reconstruction reconstruction, std::uint32_t views, bool directions,
+                          std::uint32_t shared_layers) {
   return {
       .shader = shader,
       .bindings = {{0, kTexels}, {1, kTable}, {2, kTexture}, {3, kStorage}, {4, kStorage}, {5, kTable}, {6, kTable}},
       .push_bytes = sizeof(DepositPush),
-      .constants = {{0, reconstruction == Reconstruction::kQuads}, {1, directions}, {2, views}}};
+      .constants = {{0, reconstruction == Reconstruction::kQuads}, {1, directions}, {2, views}, {3, shared_layers}}};
 }
 
 }  // namespace
 
-Deposit::Deposit(gpu::Device& device, Reconstruction reconstruction, std::uint32_t views, bool directions)
+Deposit::Deposit(gpu::Device& device, Reconstruction reconstruction, std::uint32_t views, bool directions,
+                 std::uint32_t shared_layers)
     : device_(device),
-      cells_(device, describe(shaders::deposit_cells_comp, reconstruction, views, directions), "deposit cells"),
-      rest_pass_(device, describe(shaders::deposit_rest_comp, reconstruction, views, directions), "deposit rest") {}
+      cells_(device, describe(shaders::deposit_cells_comp, reconstruction, views, directions, shared_layers),
+             "deposit cells"),
+      rest_pass_(device, describe(shaders::deposit_rest_comp, reconstruction, views, directions, shared_layers),
+                 "deposit rest") {}
 
 void Deposit::record(gpu::CommandRecorder& recorder, const PhotonBuffer& photons, const DepositSurfaces& surfaces,
                      float weight, float splat_radius, const gpu::Sampler& nearest, const FluxMap& map) {
@@ -38,13 +42,18 @@ void Deposit::record(gpu::CommandRecorder& recorder, const PhotonBuffer& photons
   if (!rest_.valid() || rest_.size() < list_bytes)
     rest_ = gpu::Buffer(device_, list_bytes, VK_BUFFER_USAGE_STORAGE_BUFFER_BIT, gpu::MemoryIntent::kDevice,
                         "cells that are left");
+  const ReceiverViews none{.half = 1.0F}, &shared = surfaces.shared ? *surfaces.shared : none;
   const DepositPush push{.grid_width = batch.grid_width,
                          .grid_height = batch.grid_height,
                          .width = map.width(),
                          .height = map.height(),
                          .steps_per_watt = weight / map.quantum(),
                          .splat_radius = splat_radius,
-                         .layer_count = surfaces.layer_count};
+                         .layer_count = surfaces.layer_count,
+                         .axes = shared.axes,
+                         .views_by_axis = shared.views_by_axis,
+                         .texels_per_metre = 0.5F * static_cast<float>(map.width()) / shared.half,
+                         .centre = shared.centre};
   recorder.pass("deposit", {Use(rest_, Access::kTransferWrite)},
                 [&](PassCommands& commands) { commands.fill(rest_, 0, 0, sizeof(std::uint32_t)); });
   const std::vector<Use> uses{Use(records, Access::kComputeRead),

@@ -11,6 +11,7 @@
 #include "frame/fetch_photon.glsl"
 #include "frame/deposit.shared.h"
 #include "frame/frame.shared.h"
+#include "frame/receiver_map.shared.h"
 
 layout(scalar, set = 0, binding = 1) readonly buffer Views { ViewRecord views[]; };
 layout(constant_id = 2) const uint kViewCount = 1u;
@@ -26,9 +27,14 @@ layout(scalar, set = 0, binding = 6) buffer Rest {
 
 layout(constant_id = 0) const bool kMakesQuads = true;
 layout(constant_id = 1) const bool kKeepsDirections = false;
+/// 0: views are parts of one picture, whose first layer has flux. Else they show the same surfaces from several sides,
+/// and so many layers of each have flux of their own.
+layout(constant_id = 3) const uint kSharedLayers = 0u;
 
 layout(push_constant, scalar) uniform Push { DepositPush push; };
 
+const bool kViewsShare = kSharedLayers > 0u;
+const uint kFluxLayers = kViewsShare ? kSharedLayers : 1u;
 const uint kChannels = kKeepsDirections ? 2u * kFluxChannels : kFluxChannels;
 
 /// Cells whose corners' directions differ from their mean by more than this are torn: an edge of the glass lies between.
@@ -51,8 +57,9 @@ int toSteps(float steps, uint random) {
   return int(floor(steps + float(random >> 8) * (1.0 / 16777216.0)));
 }
 
-/// @param salt  of what is deposited
-void addToTexel(ivec2 texel, uint view, Light light, float share, uint salt, bool is_kept) {
+/// @param picture  of flux: view · kFluxLayers + layer
+/// @param salt     of what is deposited
+void addToTexel(ivec2 texel, uint picture, Light light, float share, uint salt, bool is_kept) {
   uint random = mixBits(uint(texel.x) + (uint(texel.y) << 12) + salt * 0x9e3779b1u);
   vec3 steps = light.flux * (share * push.steps_per_watt);
   ivec3 whole = ivec3(toSteps(steps.x, random), toSteps(steps.y, random), toSteps(steps.z, random));
@@ -60,7 +67,7 @@ void addToTexel(ivec2 texel, uint view, Light light, float share, uint salt, boo
     for (uint c = 0u; c < 3u; ++c) atomicAdd(lost_steps[c], whole[c]);
     return;
   }
-  int layer = int(view * kChannels);
+  int layer = int(picture * kChannels);
   imageAtomicAdd(flux_image, ivec3(texel, layer), whole.x);
   imageAtomicAdd(flux_image, ivec3(texel, layer + 1), whole.y);
   imageAtomicAdd(flux_image, ivec3(texel, layer + 2), whole.z);
@@ -69,11 +76,97 @@ void addToTexel(ivec2 texel, uint view, Light light, float share, uint salt, boo
     for (int c = 0; c < 3; ++c)
       imageAtomicAdd(flux_image, ivec3(texel, layer + 3 + c), toSteps(along[c], mixBits(random + uint(c))));
   }
-  imageStore(tile_image, ivec3(texel / int(kDepositTile), view), uvec4(1u));
+  imageStore(tile_image, ivec3(texel / int(kDepositTile), picture), uvec4(1u));
 }
 
-TexelSurface fetchTexel(ivec2 texel, uint view) {
-  return describeTexel(texelFetch(surfaces, ivec3(texel, view * push.layer_count), 0));
+/// Of views that share surfaces: which axis one looks against (frame/receiver_map.shared.h), and where it looks to.
+uint axisOf(uint view) { return push.axes >> (4u * view) & 15u; }
+vec3 forwardOf(uint view) {
+  uint axis = axisOf(view);
+  return vec3(equal(uvec3(axis >> 1), uvec3(0u, 1u, 2u))) * ((axis & 1u) != 0u ? 1.0 : -1.0);
+}
+
+OnPicture onView(vec3 place, uint view) {
+  vec2 size = vec2(push.width, push.height);
+  if (!kViewsShare) return onPicture(projectionOf(view), place, size);
+  vec3 off = (place - push.centre) * push.texels_per_metre;
+  return OnPicture(seenAlong(axisOf(view) >> 1, off).xy + 0.5 * size, 1.0);
+}
+
+/// @param forward  of the view, where views share surfaces
+TexelSurface fetchTexel(ivec2 texel, uint view, uint layer, vec3 forward) {
+  vec4 surface = texelFetch(surfaces, ivec3(texel, view * push.layer_count + layer), 0);
+  return kViewsShare ? describeTexel(surface, forward) : describeTexel(surface);
+}
+
+/// Places that something spans in a view, and how far off their planes its texels may lie.
+struct Span {
+  vec3 first;
+  vec3 third;
+  float reach;
+  vec3 forward;  // of the view
+};
+
+/// Does light from a direction that falls on the places fall on the texel's surface?
+bool isLit(TexelSurface s, Span span, vec3 direction) {
+  bool is_on = liesOn(s, span.first, span.reach) || liesOn(s, span.third, span.reach);
+  return is_on && dot(direction, s.lit_normal) < 0.0;
+}
+
+/// The first layer of a texel that is lit; kFluxLayers: none.
+uint litLayer(ivec2 texel, uint view, Span span, vec3 direction) {
+  uint layer = 0u;
+  bool is_lit = isLit(fetchTexel(texel, view, 0u, span.forward), span, direction);
+  [[unroll]] for (uint k = 1u; k < kFluxLayers; ++k)
+    if (!is_lit) {
+      is_lit = isLit(fetchTexel(texel, view, k, span.forward), span, direction);
+      layer = k;
+    }
+  return is_lit ? layer : kFluxLayers;
+}
+
+/// Of views that share surfaces the one that is faced most by the surface on which light falls at a place; kViewCount:
+/// none shows it. Where surfaces meet, that of the nearest plane counts.
+uint searchViewFaced(vec3 place, vec3 direction) {
+  vec2 size = vec2(push.width, push.height);
+  uint faced = kViewCount;
+  float most = 0.0;
+  for (uint v = 0u; v < kViewCount; ++v) {
+    OnPicture on = onView(place, v);
+    if (!isOnPicture(on, size)) continue;
+    Span span = Span(place, place, texelSize(on.w, size), forwardOf(v));
+    for (uint k = 0u; k < kFluxLayers; ++k) {
+      TexelSurface s = fetchTexel(ivec2(on.texels), v, k, span.forward);
+      float off = abs(dot(s.lit_normal, place - s.position));
+      float facing = s.cos_view * (1.0 - off / span.reach);
+      if (!isLit(s, span, direction) || facing <= most) continue;
+      most = facing;
+      faced = v;
+    }
+  }
+  return faced;
+}
+
+/// Likewise of a cell. Nearly always it lies on a plane, which tells the view; else its first corner decides or, where
+/// that is beside all texels of its surface, the opposite one.
+uint viewFaced(vec3 places[4], vec3 direction) {
+  vec3 normal = cross(places[2] - places[0], places[3] - places[1]);
+  normal = dot(normal, direction) > 0.0 ? -normal : normal;
+  vec3 along = abs(normal);
+  uint axis = along.y > along.x ? 1u : 0u;
+  if (along.z > max(along.x, along.y)) axis = 2u;
+  bool is_negative = (axis == 0u ? normal.x : axis == 1u ? normal.y : normal.z) < 0.0;
+  uint faced = push.views_by_axis >> (8u * axis + (is_negative ? 4u : 0u)) & 15u;
+  bool is_known = faced != kNoView;
+  faced = is_known ? faced : 0u;
+  vec2 size = vec2(push.width, push.height);
+  OnPicture on = onView(places[0], faced);
+  Span span = Span(places[0], places[0], texelSize(on.w, size), forwardOf(faced));
+  if (is_known && isOnPicture(on, size) && litLayer(ivec2(on.texels), faced, span, direction) < kFluxLayers)
+    return faced;
+  faced = searchViewFaced(places[0], direction);
+  if (faced == kViewCount) faced = searchViewFaced(places[2], direction);
+  return faced;
 }
 
 /// An edge of a polygon, from a to b, and how x changes with y along it.
@@ -112,10 +205,9 @@ struct CellOnPicture {
 };
 
 CellOnPicture cellOnPicture(vec3 places[4], uint view) {
-  Projection projection = projectionOf(view);
   CellOnPicture cell;
   for (uint k = 0u; k < 4u; ++k) {
-    OnPicture on = onPicture(projection, places[k], vec2(push.width, push.height));
+    OnPicture on = onView(places[k], view);
     cell.corners[k] = on.texels;
     cell.lower = k == 0u ? on.texels : min(cell.lower, on.texels);
     cell.upper = k == 0u ? on.texels : max(cell.upper, on.texels);
@@ -189,25 +281,22 @@ float shareIn(Coverage k, vec2 at) {
          (at == k.point_2 ? k.point_share_2 : 0.0);
 }
 
-/// Places that a cell spans, and how far off their planes its texels may lie.
-struct Span {
-  vec3 first;
-  vec3 third;
-  float reach;
-};
-
-Span spanOf(CellOnPicture cell, vec3 places[4]) {
+Span spanOf(CellOnPicture cell, vec3 places[4], uint view) {
   return Span(places[0], places[2],
-              texelSize(cell.most_w, vec2(push.width, push.height)) + 0.25 * length(places[2] - places[0]));
+              texelSize(cell.most_w, vec2(push.width, push.height)) + 0.25 * length(places[2] - places[0]),
+              kViewsShare ? forwardOf(view) : vec3(0.0));
 }
+
+/// What no picture shows.
+void addToLost(Light light, uint salt) { addToTexel(ivec2(0), 0u, light, 1.0, salt, false); }
 
 void addShare(Coverage k, vec2 at, uint view, Span span, Light light, uint salt) {
   float share = shareIn(k, at);
   if (share <= 0.0) return;
   ivec2 texel = ivec2(k.origin + at);
-  TexelSurface s = fetchTexel(texel, view);
-  bool is_on = liesOn(s, span.first, span.reach) || liesOn(s, span.third, span.reach);
-  addToTexel(texel, view, light, share, salt, is_on && dot(light.direction, s.lit_normal) < 0.0);
+  uint layer = litLayer(texel, view, span, light.direction);
+  bool is_lit = layer < kFluxLayers;
+  addToTexel(texel, view * kFluxLayers + (is_lit ? layer : 0u), light, share, salt, is_lit);
 }
 
 bool isPhoton(ivec2 at) {

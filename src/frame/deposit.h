@@ -5,6 +5,7 @@
 
 #include "frame/flux_map.h"
 #include "frame/photon_buffer.h"
+#include "frame/receiver_views.h"
 #include "frame/scene_buffers.h"
 #include "gpu/commands.h"
 
@@ -18,9 +19,10 @@ enum class Reconstruction : std::uint8_t {
 
 /// The picture's surfaces: of each texel the place in the world and the normal, as SurfaceLayers has them.
 struct DepositSurfaces {
-  const gpu::Buffer& views;    ///< ViewRecords: one, or the faces of a cube
+  const gpu::Buffer& views;    ///< ViewRecords: one, the faces of a cube, or those of a ReceiverMap
   const gpu::Image& surfaces;  ///< SurfaceLayers::surfaces
   std::uint32_t layer_count = 1;
+  const ReceiverViews* shared = nullptr;  ///< of what Deposit is made for
 };
 
 /// Not thread-safe. The device must outlive it.
@@ -28,8 +30,13 @@ class Deposit {
  public:
   /// @param views       of the pictures: one, or so many faces of a cube
   /// @param directions  for maps that keep them
+  /// @param shared_layers  0: what a view shows first is deposited on. Else the views are parallel, of one size, and
+  /// show
+  ///                    the same things from several sides, so many layers behind one another of which each has flux
+  ///                    of its own (FluxMap of views · shared_layers): a cell goes to the view that its surface faces
   /// @throws ResourceError
-  Deposit(gpu::Device& device, Reconstruction reconstruction, std::uint32_t views, bool directions);
+  Deposit(gpu::Device& device, Reconstruction reconstruction, std::uint32_t views, bool directions,
+          std::uint32_t shared_layers = 0);
 
   /// Records passes that add photons of a grid to the map. The flux of each stays what it is, whether it is spread
   /// over cells or splatted; where the picture shows another surface than the one that a photon ends on, or its other

@@ -19,6 +19,11 @@ struct DepositPush {
   float steps_per_watt;  // of the whole numbers
   float splat_radius;    // texels
   uint layer_count;      // of each view, in the images of surfaces; the first is what flux is deposited on
+  // Of views that share surfaces (frame/receiver_map.shared.h), which are squares about one place.
+  uint axes;
+  uint views_by_axis;
+  float texels_per_metre;
+  vec3 centre;
 };
 
 NEPHROID_NAMESPACE_END

@@ -13,25 +13,32 @@ void main() {
   if (first.x >= int(push.grid_width) || first.y >= int(push.grid_height)) return;
   Cell cell = fetchCell(first);
   uint number = gl_GlobalInvocationID.y * cellsAcross() + gl_GlobalInvocationID.x;
+  bool is_whole = kMakesQuads && cell.is_whole;
+  Light light = lightOf(cell);
+  uint faced = kViewsShare && is_whole ? viewFaced(cell.places, light.direction) : kViewCount;
+  if (kViewsShare && is_whole && faced == kViewCount) addToLost(light, number);
   // Nearly always one picture shows all of it.
   uint view = kViewCount;
   bool crosses = false;
   CellOnPicture shown;
-  [[unroll]] for (uint v = 0u; v < kViewCount; ++v) {
+  if (faced < kViewCount) {
+    shown = cellOnPicture(cell.places, faced);
+    if (mayBeSeen(shown)) view = faced;
+  }
+  [[unroll]] for (uint v = 0u; v < (kViewsShare ? 0u : kViewCount); ++v) {
     CellOnPicture here = cellOnPicture(cell.places, v);
     if (!mayBeSeen(here)) continue;
     crosses = crosses || view != kViewCount;
     view = v;
     shown = here;
   }
-  bool is_seen = kMakesQuads && cell.is_whole && view != kViewCount;
+  bool is_seen = is_whole && view != kViewCount;
   Coverage coverage = coverageOf(shown);
   bool is_small = is_seen && !crosses && countTexels(coverage) <= kLargeBox;
-  if (cell.valid != 0u && !is_small && (is_seen || !kMakesQuads || !cell.is_whole))
+  if (cell.valid != 0u && !is_small && (is_seen || !is_whole))
     rest[atomicAdd(rest_count, 1u)] = number;
   if (!is_small) return;
-  Light light = lightOf(cell);
-  Span span = spanOf(shown, cell.places);
+  Span span = spanOf(shown, cell.places, view);
   // One loop, so that threads that go in step do not wait for each other's rows.
   vec2 at = coverage.first;
   while (at.y < coverage.end.y) {

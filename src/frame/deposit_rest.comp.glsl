@@ -12,16 +12,18 @@ layout(local_size_x = 64) in;
 /// that it lies in shows another.
 void splat(vec3 place, Light light, uint salt) {
   vec2 size = vec2(push.width, push.height);
-  for (uint v = 0u; v < kViewCount; ++v) {
-    OnPicture on = onPicture(projectionOf(v), place, size);
+  uint faced = kViewsShare ? searchViewFaced(place, light.direction) : kViewCount;
+  if (kViewsShare && faced == kViewCount) addToLost(light, salt);
+  for (uint v = kViewsShare ? faced : 0u; v < (kViewsShare ? min(faced + 1u, kViewCount) : kViewCount); ++v) {
+    OnPicture on = onView(place, v);
     if (!isOnPicture(on, size)) continue;
     float reach = texelSize(on.w, size) * (1.0 + push.splat_radius);
     ivec2 first = ivec2(max(floor(on.texels - push.splat_radius), vec2(0.0)));
     ivec2 last = ivec2(min(floor(on.texels + push.splat_radius), size - 1.0));
-    TexelSurface own = fetchTexel(ivec2(on.texels), v);
-    if (!liesOn(own, place, reach) || dot(light.direction, own.lit_normal) >= 0.0) {
+    Span span = Span(place, place, reach, kViewsShare ? forwardOf(v) : vec3(0.0));
+    if (litLayer(ivec2(on.texels), v, span, light.direction) == kFluxLayers) {
       // Beside an edge others must not get what it hides.
-      addToTexel(ivec2(on.texels), v, light, 1.0, salt, false);
+      addToLost(light, salt);
       return;
     }
     float inverse = 2.0 / (push.splat_radius * push.splat_radius);
@@ -29,12 +31,12 @@ void splat(vec3 place, Light light, uint salt) {
     for (uint round = 0u; round < 2u; ++round)
       for (int y = first.y; y <= last.y; ++y)
         for (int x = first.x; x <= last.x; ++x) {
-          TexelSurface s = fetchTexel(ivec2(x, y), v);
+          uint layer = litLayer(ivec2(x, y), v, span, light.direction);
           vec2 off = vec2(x, y) + 0.5 - on.texels;
           float weight = exp(-dot(off, off) * inverse);
-          if (!liesOn(s, place, reach) || dot(light.direction, s.lit_normal) >= 0.0) continue;
+          if (layer == kFluxLayers) continue;
           if (round == 0u) sum += weight;
-          else addToTexel(ivec2(x, y), v, light, weight / sum, salt, true);
+          else addToTexel(ivec2(x, y), v * kFluxLayers + layer, light, weight / sum, salt, true);
         }
   }
 }
@@ -67,14 +69,17 @@ vec2 spanInRow(vec2 span, Edge e, float y) {
   return vec2(min(span.x, min(x_0, x_1)), max(span.y, max(x_0, x_1)));
 }
 
-/// A cell on all pictures that show some of it, each thread some of its rows.
+/// A cell on all pictures that show some of it or, if they share surfaces, on the one that its surface faces: each thread
+/// some of its rows.
 /// @param lane  of `lanes` threads
 void addByRows(vec3 places[4], Light light, uint salt, uint lane, uint lanes) {
-  for (uint v = 0u; v < kViewCount; ++v) {
+  uint faced = kViewsShare ? viewFaced(places, light.direction) : kViewCount;
+  if (kViewsShare && faced == kViewCount && lane == 0u) addToLost(light, salt);
+  for (uint v = kViewsShare ? faced : 0u; v < (kViewsShare ? min(faced + 1u, kViewCount) : kViewCount); ++v) {
     CellOnPicture shown = cellOnPicture(places, v);
     if (!mayBeSeen(shown)) continue;
     Coverage k = coverageOf(shown);
-    Span span = spanOf(shown, places);
+    Span span = spanOf(shown, places, v);
     for (float y = k.first.y + float(lane); y < k.end.y; y += float(lanes)) {
       vec2 in_row = spanInRow(spanInRow(vec2(1e30, -1e30), k.ab, y), k.bc, y);
       in_row = spanInRow(spanInRow(in_row, k.cd, y), k.da, y);

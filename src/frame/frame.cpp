@@ -106,9 +106,9 @@ RealtimeFrame::RealtimeFrame(gpu::Device& device, const SceneData& scene, const 
   recorder_.submit();
   light_grids_ = std::make_unique<LightGrids>(device, scene, *buffers_, settings.shadow_size, settings.seed);
   makePasses();
-  if (settings.specular) makeSpecular();
   if (make_technique)
     technique_ = make_technique({device, scene, *buffers_, *light_grids_, settings.specular_alpha, settings.seed});
+  if (settings.specular) makeSpecular();
   makeCaustic();
   reset();
 }
@@ -144,8 +144,9 @@ void RealtimeFrame::makeSpecular() {
   if (!settings_.box_tree_builder || !buffers_->traits().specular.present) return;
   recorder_.begin();
   if (!tree_) tree_ = std::make_unique<TriangleTree>(device_, recorder_, scene_, settings_.box_tree_builder);
-  const SpecularPass::Inputs inputs{camera_view_,         seen_,         tint_, lamps_, environment_,
-                                    environment_sampler_, *light_grids_, *tree_};
+  const SpecularPass::Inputs inputs{camera_view_,  seen_,        tint_,
+                                    lamps_,        environment_, environment_sampler_,
+                                    *light_grids_, *tree_,       technique_ ? technique_->lightReceivers() : nullptr};
   specular_ = std::make_unique<SpecularPass>(
       device_, recorder_, *buffers_, inputs, lightConstants(),
       SpecularPass::Following{.max_events = settings_.max_events, .spacing = specularSpacing()});
@@ -275,8 +276,9 @@ void RealtimeFrame::render(std::uint32_t sample) {
   if (buffers_->traits().passable) recordTint(film_offset, sample);
   const SamplePush push = samplePush(film_offset, sample);
   shade_->record(recorder_, push);
-  if (specular_) specular_->record(recorder_, push);
+  // First: mirrors and glass show it.
   if (technique_) recordCaustic(sample);
+  if (specular_) specular_->record(recorder_, push);
   recorder_.submit();
   recorder_.wait();
   times_.insert(times_.end(), recorder_.passTimes().begin(), recorder_.passTimes().end());
@@ -365,6 +367,7 @@ const gpu::Image* RealtimeFrame::sumOf(const std::string& layer) const {
   if (layer == "direct") return &shade_->direct();
   if (layer == "emission") return &shade_->emission();
   if (layer == "specular") return specular_ ? &specular_->sum() : nullptr;
+  if (layer == "specular_caustic") return specular_ ? specular_->causticSum() : nullptr;
   if (layer == "caustic") return caustic_ ? &caustic_->radianceSum() : nullptr;
   if (layer == "irradiance_caustic") return caustic_ ? &caustic_->irradianceSum() : nullptr;
   throw InternalError(fmt::format("'{}' is no layer that the frame sums", layer));
@@ -372,7 +375,7 @@ const gpu::Image* RealtimeFrame::sumOf(const std::string& layer) const {
 
 std::vector<const gpu::Image*> RealtimeFrame::sums() const {
   std::vector<const gpu::Image*> images;
-  for (const char* layer : {"direct", "emission", "specular", "caustic", "irradiance_caustic"})
+  for (const char* layer : {"direct", "emission", "specular", "specular_caustic", "caustic", "irradiance_caustic"})
     if (const gpu::Image* sum = sumOf(layer)) images.push_back(sum);
   return images;
 }
@@ -451,7 +454,8 @@ Image RealtimeFrame::readGeometry(const std::string& layer) {
   return takeChannels(device_, target, kind >= 3 ? 1 : 3, 1.0F);
 }
 
-std::vector<std::string> describeFrameLimits(const SceneData& scene, const FrameSettings& settings) {
+std::vector<std::string> describeFrameLimits(const SceneData& scene, const FrameSettings& settings,
+                                             bool lights_receivers) {
   bool rough_panes = false, panes = false, spheres = false, rough = false, solids = false, specular = false;
   for (const Material& m : scene.materials) {
     specular = specular || isSpecular(m, settings.specular_alpha);
@@ -469,8 +473,8 @@ std::vector<std::string> describeFrameLimits(const SceneData& scene, const Frame
   if (settings.specular && specular && !settings.box_tree_builder)
     limits.emplace_back("specular is black: there is no builder of the tree in which it finds what rays meet");
   if (solids)
-    limits.emplace_back(
-        "specular has no caustics and no indirect light on what is seen, and no medium around the camera");
+    limits.emplace_back(fmt::format("specular has no {}indirect light on what is seen, and no medium around the camera",
+                                    lights_receivers ? "" : "caustics and no "));
   if (rough) limits.emplace_back("glass of specular-alpha and above shows nothing of what is behind it");
   return limits;
 }

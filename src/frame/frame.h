@@ -74,7 +74,7 @@ class RealtimeFrame {
   const std::vector<gpu::PassTime>& passTimes() const { return times_; }
 
   /// Mean of a layer over the samples since `reset`: "direct", "caustic", "specular", "emission" and, not summed,
-  /// "irradiance_caustic". Black if the frame does not make it.
+  /// "specular_caustic" and "irradiance_caustic". Black if the frame does not make it.
   Image readSummed(const std::string& layer);
   /// A layer of the geometry at the pixels' centres: "albedo", "normal", "position", "depth", "id".
   Image readGeometry(const std::string& layer);
@@ -127,8 +127,8 @@ class RealtimeFrame {
   std::unique_ptr<ComputeRaster> raster_;         ///< where it is used
   std::unique_ptr<TriangleTree> tree_;            ///< null: nothing is specular
   std::unique_ptr<ShadePass> shade_;
-  std::unique_ptr<SpecularPass> specular_;        ///< null: nothing is specular
   std::unique_ptr<RealtimeTechnique> technique_;  ///< null: none, or it has nothing to draw
+  std::unique_ptr<SpecularPass> specular_;        ///< null: nothing is specular
   std::unique_ptr<CausticPass> caustic_;          ///< where there is one
   std::unique_ptr<DisplayPass> display_;          ///< once somebody asked for it
   std::unique_ptr<ForeignLighting> foreign_;      ///< likewise
@@ -145,6 +145,8 @@ class RealtimeFrame {
 };
 
 /// What the scene asks for and a frame of these settings does not do, a sentence each.
-std::vector<std::string> describeFrameLimits(const SceneData& scene, const FrameSettings& settings);
+/// @param lights_receivers  its technique says what mirrors and glass show of caustics
+std::vector<std::string> describeFrameLimits(const SceneData& scene, const FrameSettings& settings,
+                                             bool lights_receivers = false);
 
 }  // namespace nephroid

@@ -1,5 +1,6 @@
 // What a real-time technique gets from the frame and gives to it. The frame draws everything but the caustic; a
-// technique says how much light reaches each pixel on its way through glass, water and mirrors.
+// technique says how much light reaches each pixel on its way through glass, water and mirrors and, if it can, each
+// place that mirrors and glass show.
 #pragma once
 
 #include <cstddef>
@@ -10,6 +11,7 @@
 #include "frame/irradiance_images.h"
 #include "frame/light_grids.h"
 #include "frame/pixel_surfaces.h"
+#include "frame/receiver_map.h"
 #include "frame/scene_buffers.h"
 #include "gpu/commands.h"
 #include "scene/scene_data.h"
@@ -45,6 +47,12 @@ class RealtimeTechnique {
   /// Records passes that add the irradiance of light LS⁺, on the side of each surface that is seen, to the target.
   /// @throws ResourceError
   virtual void record(gpu::CommandRecorder& recorder, const RealtimeSample& sample) = 0;
+
+  /// Asked by who shows caustics in mirrors and through glass. From now on `record` of the frame's own pictures also
+  /// says what falls on all receivers; the map is remade when objects move, and then asked for again.
+  /// @return  null: the technique knows of pixels alone
+  /// @throws ResourceError
+  virtual const ReceiverMap* lightReceivers() { return nullptr; }
 
   /// SceneData::lights[index] is another now.
   virtual void lightChanged(std::size_t index) = 0;

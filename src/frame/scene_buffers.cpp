@@ -322,6 +322,7 @@ void SceneBuffers::updateInstances(gpu::Device& device, gpu::CommandRecorder& re
                       .passable = passable,
                       .generates = generates,
                       .receives = classes_[mesh.material].is_receiver,
+                      .closed = place.is_closed,
                       .bounds = bounds});
   }
   instances_ = makeTable<InstanceRecord>(device, recorder, instances, "instances");

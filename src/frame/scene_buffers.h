@@ -79,6 +79,7 @@ class SceneBuffers {
     bool passable = false;   ///< light and sight may pass straight through it
     bool generates = false;  ///< casts caustics
     bool receives = false;   ///< catches them
+    bool closed = false;     ///< its mesh has no open edges; known of scenes with generators
     Bounds bounds;           ///< world
   };
   const std::vector<Draw>& draws() const { return draws_; }

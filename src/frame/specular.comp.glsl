@@ -28,6 +28,8 @@
 #include "frame/specular_grid.glsl"
 #include "frame/specular_ends.glsl"
 #include "frame/specular_others.glsl"
+#define NEPHROID_RECEIVER_BINDINGS 21
+#include "frame/receiver_map.glsl"
 
 layout(local_size_x = 64) in;
 layout(scalar, set = 0, binding = 11) readonly buffer Views { ViewRecord views[]; };
@@ -263,11 +265,13 @@ Chains startChains(Ray ray, uvec2 pixel, uint skipped) {
 }
 
 /// Light that a chain's last surface sends along it.
-vec3 litRadiance(Receiver receiver) {
+vec3 litRadiance(Receiver receiver, uvec2 pixel) {
   Surface s = turnTowards(surfaceMet(receiver.instance, receiver.triangle, receiver.u, receiver.v), receiver.dir);
   MaterialPoint m = materialAt(s.instance, s.triangle, s.u, s.v);
   m.optics.ior_from = receiver.ior_from;
-  return receiver.weight * lightFromAll(push.light_count, s, m, -receiver.dir, push.specular_alpha);
+  vec3 caustic = receiver.weight * causticFrom(s, m, -receiver.dir, push.specular_alpha);
+  addToSpecularCaustic(ivec2(pixel), caustic);
+  return receiver.weight * lightFromAll(push.light_count, s, m, -receiver.dir, push.specular_alpha) + caustic;
 }
 
 /// A step of a chain: to the next surface, or out of the scene. @return  what it was drawn to see lit
@@ -358,7 +362,7 @@ vec3 followChains(Ray ray, uvec2 pixel, uint skipped, uvec2 point) {
   } while (step < 8u * max_events && !chains.path.ended);
   if (kTask != kFollowMost && first.found) {
     do {
-      chains.radiance += litRadiance(first);
+      chains.radiance += litRadiance(first, pixel);
       first = second;
       second.found = false;
     } while (first.found);

@@ -15,6 +15,8 @@
 #include "frame/specular_others.glsl"
 #define NEPHROID_SKY_BINDINGS 14
 #include "frame/sky.glsl"
+#define NEPHROID_RECEIVER_BINDINGS 18
+#include "frame/receiver_map.glsl"
 
 layout(local_size_x = 64) in;
 layout(set = 0, binding = 17) uniform sampler2D bends;
@@ -140,11 +142,15 @@ uint findShadowedEnds(uint light_index, LightRecord light, CellEnd e, LitTriangl
 
 /// What a surface sends back along the ray that meets it.
 /// @param shadowed  by light, of few: whether the place lies in its shadow
-vec3 radianceOf(LitTriangle lit, Seen seen, bool shadowed[2]) {
+/// @param weight    times which the pixel shows it
+vec3 radianceOf(LitTriangle lit, Seen seen, bool shadowed[2], ivec2 pixel, vec3 weight) {
   Surface s = seen.surface;
   MaterialPoint m = materialOn(lit.triangle, s.u, s.v);
   m.optics.ior_from = lit.ior_from;
   vec3 radiance = kSceneEmits && (seen.front || m.double_sided) ? m.emission : vec3(0.0);
+  vec3 caustic = causticFrom(s, m, -seen.dir, push.specular_alpha);
+  addToSpecularCaustic(pixel, weight * caustic);
+  radiance += caustic;
   if (!kHasBlockShadows) return radiance + lightFromAll(push.light_count, s, m, -seen.dir, push.specular_alpha);
   [[unroll]] for (uint i = 0u; i < kFewLights; ++i) {
     Arriving arriving = arriveFrom(lights[i], s.position);
@@ -172,7 +178,7 @@ void showPixels(CellEnd e, LitTriangle lit, Pixels pixels) {
       radiance = environmentFrom(normalize(placeAt(e, at)));
     } else {
       bool of_pixel[2] = bool[2]((shadowed[0] >> k & 1u) != 0u, (shadowed[1] >> k & 1u) != 0u);
-      radiance = radianceOf(lit, seenAt(e, lit, at), of_pixel);
+      radiance = radianceOf(lit, seenAt(e, lit, at), of_pixel, pixel, weight.xyz);
     }
     imageStore(specular_image, pixel, imageLoad(specular_image, pixel) + vec4(weight.xyz * radiance, 0.0));
     ++k;

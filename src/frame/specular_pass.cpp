@@ -42,6 +42,13 @@ constexpr std::array<ListHead, kListCount> kNoLists{};
 /// Texels of a point: frame/specular_ends.glsl.
 constexpr std::uint32_t kEndTexels = 3, kBendTexels = 2, kChainCount = 2;
 
+/// Of frame/receiver_map.glsl, the layer's sum included.
+std::vector<VkDescriptorType> receiverTypes() {
+  std::vector<VkDescriptorType> types = ReceiverMap::descriptorTypes();
+  types.push_back(kStorage);
+  return types;
+}
+
 std::vector<gpu::Constant> join(std::vector<gpu::Constant> constants, const std::vector<gpu::Constant>& more) {
   constants.insert(constants.end(), more.begin(), more.end());
   return constants;
@@ -62,25 +69,30 @@ SpecularPass::SpecularPass(gpu::Device& device, gpu::CommandRecorder& recorder, 
     : buffers_(buffers),
       inputs_(inputs),
       following_(following),
+      no_receivers_(device),
       bands_(makeBandTable(device, recorder)),
       no_lists_(device, sizeof(kNoLists), 0, gpu::MemoryIntent::kDevice, "no lists") {
   recorder.upload(no_lists_, std::as_bytes(std::span(kNoLists)));
   const SceneTraits& traits = buffers.traits();
   const gpu::Constant spacing{kSpacingConstant, following.spacing};
+  const std::vector<gpu::Constant> of_ends =
+      join(lights, (inputs.receivers ? *inputs.receivers : no_receivers_).constants());
   const auto make = [&](gpu::Spirv shader, std::initializer_list<VkDescriptorType> types,
-                        const std::vector<gpu::Constant>& constants, const char* name) {
-    return gpu::ComputePipeline(device,
-                                {.shader = shader,
-                                 .bindings = SceneBuffers::bindings(types),
-                                 .push_bytes = sizeof(Push),
-                                 .constants = join(constants, {spacing})},
-                                name);
+                        const std::vector<gpu::Constant>& constants, const char* name, bool lights_ends = false) {
+    std::vector<gpu::Binding> bindings = SceneBuffers::bindings(types);
+    if (lights_ends)
+      for (const VkDescriptorType type : receiverTypes())
+        bindings.push_back({static_cast<std::uint32_t>(bindings.size()), type});
+    return gpu::ComputePipeline(
+        device,
+        {.shader = shader, .bindings = bindings, .push_bytes = sizeof(Push), .constants = join(constants, {spacing})},
+        name);
   };
   const auto follow = [&](std::uint32_t task, const char* name) {
     return make(shaders::specular_comp,
                 {kTexture, kTexture, kTexture, kTable, kTable, kStorage, kTexture, kTexture, kTexture, kStorage,
                  kTexture, kTexture, kTexture, kTable},
-                join(join(traits.pathConstants(), lights), {{kTaskConstant, task}}), name);
+                join(join(traits.pathConstants(), of_ends), {{kTaskConstant, task}}), name, true);
   };
   pixels_ = make(shaders::specular_pixels_comp, {kTexture, kTable, kTexture}, traits.constants(), "specular pixels");
   follow_all_ = follow(kShowAll, "specular");
@@ -93,7 +105,7 @@ SpecularPass::SpecularPass(gpu::Device& device, gpu::CommandRecorder& recorder, 
     lit_ =
         make(shaders::specular_lit_comp,
              {kTexture, kTexture, kTexture, kTable, kTexture, kTable, kTexture, kTexture, kTexture, kStorage, kTexture},
-             join(traits.constants(), lights), "specular lit");
+             join(traits.constants(), of_ends), "specular lit", true);
     follow_others_ = follow(kShowOthers, "specular others");
   }
   fitPicture(device);
@@ -112,14 +124,18 @@ uvec2 SpecularPass::pointCount() const {
 
 void SpecularPass::fitPicture(gpu::Device& device) {
   const gpu::ImageDesc& seen = inputs_.seen.desc();
-  sum_ = gpu::Image(device,
-                    {.format = kFloat4,
-                     .width = seen.width,
-                     .height = seen.height,
-                     .usage = VK_IMAGE_USAGE_STORAGE_BIT | VK_IMAGE_USAGE_SAMPLED_BIT},
-                    "specular");
+  const auto make_sum = [&](uvec2 size, const char* name) {
+    return gpu::Image(device,
+                      {.format = kFloat4,
+                       .width = size.x,
+                       .height = size.y,
+                       .usage = VK_IMAGE_USAGE_STORAGE_BIT | VK_IMAGE_USAGE_SAMPLED_BIT},
+                      name);
+  };
+  sum_ = make_sum({seen.width, seen.height}, "specular");
+  // Something has to be bound, here and below.
+  caustic_sum_ = make_sum(inputs_.receivers ? uvec2(seen.width, seen.height) : uvec2(1), "caustics in specular");
   const uvec2 points = pointCount();
-  // Something has to be bound.
   const uvec2 kept = hasCells() ? points : uvec2(1);
   ends_ = gpu::Image(device,
                      {.format = VK_FORMAT_R32G32B32A32_UINT,
@@ -150,6 +166,14 @@ SpecularPass::Push SpecularPass::pushOf(const SamplePush& sample) const {
           .band_count = static_cast<std::uint32_t>(kBandCount),
           .shift = uvec2(place % side, place / side),
           .chain = 0};
+}
+
+void SpecularPass::appendReceivers(std::uint32_t first, std::vector<Bound>& bound, std::vector<Use>& uses) const {
+  const ReceiverMap& receivers = inputs_.receivers ? *inputs_.receivers : no_receivers_;
+  receivers.appendBound(first, buffers_.sampler(), bound);
+  bound.emplace_back(first + ReceiverMap::kBindings, caustic_sum_);
+  receivers.appendUses(uses);
+  uses.emplace_back(caustic_sum_, Access::kComputeWrite);
 }
 
 void SpecularPass::recordPixels(gpu::CommandRecorder& recorder, const Push& push) {
@@ -215,6 +239,7 @@ void SpecularPass::recordLit(gpu::CommandRecorder& recorder, Push push) {
       buffers_.bound({Bound(11, inputs_.seen, nearest), Bound(12, lists_), Bound(13, ends_, nearest),
                       Bound(14, inputs_.lamps, nearest), Bound(15, inputs_.environment, inputs_.environment_sampler),
                       Bound(16, sum_), Bound(17, bends_, nearest)});
+  appendReceivers(18, bound, uses);
   const std::vector<Bound> of_grids = grids.bound(SceneBuffers::kBindings);
   bound.insert(bound.end(), of_grids.begin(), of_grids.end());
   // One after the other: both add to the same pixels.
@@ -240,16 +265,17 @@ void SpecularPass::recordFollowing(gpu::CommandRecorder& recorder, const gpu::Co
        Use(inputs_.tree.nodes(), Access::kComputeRead), Use(inputs_.tree.triangles(), Access::kComputeRead)});
   const std::vector<Use> of_lights = grids.uses();
   uses.insert(uses.end(), of_lights.begin(), of_lights.end());
+  const gpu::Sampler& nearest = buffers_.sampler();
+  std::vector<Bound> bound = buffers_.bound(
+      {Bound(11, inputs_.camera_view), Bound(12, ends_), Bound(13, bands_, nearest), Bound(14, inputs_.lamps, nearest),
+       Bound(15, inputs_.environment, inputs_.environment_sampler), Bound(16, sum_),
+       Bound(17, inputs_.tree.nodes(), nearest), Bound(18, inputs_.tree.triangles(), nearest),
+       Bound(19, inputs_.seen, nearest), Bound(20, lists_)});
+  appendReceivers(21, bound, uses);
+  const std::vector<Bound> of_grids = grids.bound(SceneBuffers::kBindings);
+  bound.insert(bound.end(), of_grids.begin(), of_grids.end());
   recorder.pass(name, uses, [&](PassCommands& commands) {
-    const gpu::Sampler& nearest = buffers_.sampler();
     commands.bind(pipeline);
-    std::vector<Bound> bound = buffers_.bound(
-        {Bound(11, inputs_.camera_view), Bound(12, ends_), Bound(13, bands_, nearest),
-         Bound(14, inputs_.lamps, nearest), Bound(15, inputs_.environment, inputs_.environment_sampler),
-         Bound(16, sum_), Bound(17, inputs_.tree.nodes(), nearest), Bound(18, inputs_.tree.triangles(), nearest),
-         Bound(19, inputs_.seen, nearest), Bound(20, lists_)});
-    const std::vector<Bound> of_grids = grids.bound(SceneBuffers::kBindings);
-    bound.insert(bound.end(), of_grids.begin(), of_grids.end());
     commands.bindResources(bound);
     commands.pushConstants(push);
     commands.dispatchIndirect(lists_, list * sizeof(ListHead));

@@ -11,6 +11,7 @@
 
 #include "core/math.h"
 #include "frame/light_grids.h"
+#include "frame/receiver_map.h"
 #include "frame/sample_push.shared.h"
 #include "frame/scene_buffers.h"
 #include "frame/triangle_tree.h"
@@ -28,6 +29,7 @@ class SpecularPass {
     const gpu::Sampler& environment_sampler;
     const LightGrids& grids;
     const TriangleTree& tree;
+    const ReceiverMap* receivers;  ///< caustics on what is seen; null: there are none
   };
   /// How chains are followed.
   struct Following {
@@ -46,6 +48,8 @@ class SpecularPass {
   void record(gpu::CommandRecorder& recorder, const SamplePush& sample);
   /// Sum over samples, W/m²/sr.
   const gpu::Image& sum() const { return sum_; }
+  /// The caustics in it; null where there are none.
+  const gpu::Image* causticSum() const { return inputs_.receivers ? &caustic_sum_ : nullptr; }
 
  private:
   struct Push;
@@ -59,13 +63,16 @@ class SpecularPass {
   void recordFollowing(gpu::CommandRecorder& recorder, const gpu::ComputePipeline& pipeline, const char* name,
                        std::uint32_t list, const Push& push);
   uvec2 pointCount() const;
+  /// What frame/receiver_map.glsl reads and writes.
+  void appendReceivers(std::uint32_t first, std::vector<gpu::Bound>& bound, std::vector<gpu::Use>& uses) const;
 
   const SceneBuffers& buffers_;
   Inputs inputs_;
   Following following_;
   gpu::ComputePipeline pixels_, follow_all_;
   gpu::ComputePipeline cells_, mixed_, follow_most_, agreement_, lit_, follow_others_;  ///< where there are cells
-  gpu::Image bands_, sum_, ends_, bends_;
+  ReceiverMap no_receivers_;                                                            ///< bound where there are none
+  gpu::Image bands_, sum_, caustic_sum_, ends_, bends_;
   gpu::Buffer no_lists_, lists_;  ///< the heads of empty lists; heads and lists
 };
 

@@ -3,6 +3,7 @@
 #include "core/assert.h"
 #include "frame/passes.h"
 #include "frame/view.h"
+#include "shaders/frame/facing.frag.h"
 #include "shaders/frame/layer.vert.h"
 #include "shaders/frame/peel.frag.h"
 #include "shaders/frame/surface_layers.comp.h"
@@ -14,14 +15,23 @@ namespace {
 constexpr VkFormat kSeenFormat = VK_FORMAT_R32G32_UINT;
 constexpr VkFormat kDepthFormat = VK_FORMAT_D32_SFLOAT;
 
-gpu::GraphicsPipeline makeDraw(gpu::Device& device, gpu::Spirv fragment, std::vector<gpu::Binding> bindings,
-                               const SceneBuffers& buffers, const char* name) {
+/// Of facing.frag.glsl: whether it leaves out what was seen before.
+constexpr std::uint32_t kPeelsConstant = 8;
+
+gpu::GraphicsPipeline makeDraw(gpu::Device& device, SurfaceLayers::Sides sides, bool peels, const SceneBuffers& buffers,
+                               const char* name) {
+  const bool facing = sides == SurfaceLayers::Sides::kFacing;
+  std::vector<gpu::Constant> constants = buffers.traits().constants();
+  if (facing) constants.push_back({kPeelsConstant, peels});
+  gpu::Spirv fragment = shaders::visibility_frag;
+  if (peels) fragment = shaders::peel_frag;
+  if (facing) fragment = shaders::facing_frag;
   return {device,
           {.vertex = shaders::layer_vert,
            .fragment = fragment,
-           .bindings = std::move(bindings),
+           .bindings = facing || peels ? SceneBuffers::bindings({kTable, kTexture}) : SceneBuffers::bindings({kTable}),
            .push_bytes = sizeof(std::uint32_t),
-           .constants = buffers.traits().constants(),
+           .constants = constants,
            .vertex_buffers = {{0, sizeof(vec3), VK_VERTEX_INPUT_RATE_VERTEX}},
            .attributes = {{0, 0, VK_FORMAT_R32G32B32_SFLOAT, 0}},
            .colors = {{.format = kSeenFormat}},
@@ -39,10 +49,11 @@ gpu::Image makeLayers(gpu::Device& device, VkFormat format, std::uint32_t size, 
 }  // namespace
 
 SurfaceLayers::SurfaceLayers(gpu::Device& device, const SceneBuffers& buffers, std::uint32_t size, std::uint32_t views,
-                             std::uint32_t layers)
+                             std::uint32_t layers, Sides sides)
     : buffers_(buffers),
-      first_(makeDraw(device, shaders::visibility_frag, SceneBuffers::bindings({kTable}), buffers, "first layer")),
-      next_(makeDraw(device, shaders::peel_frag, SceneBuffers::bindings({kTable, kTexture}), buffers, "next layer")),
+      sides_(sides),
+      first_(makeDraw(device, sides, false, buffers, "first layer")),
+      next_(makeDraw(device, sides, true, buffers, "next layer")),
       places_(device,
               {.shader = shaders::surface_layers_comp,
                .bindings = SceneBuffers::bindings({kTable, kTexture, kStorage, kStorage}),
@@ -97,13 +108,15 @@ void SurfaceLayers::recordLayer(gpu::CommandRecorder& recorder, const ViewRecord
       {Use(views_, Access::kGraphicsRead), Use(buffers_.positions(), Access::kVertexFetch),
        Use(buffers_.indices(), Access::kVertexFetch), Use(seen_, Access::kColorTarget, view_index == 0 && layer == 0),
        Use(depth, Access::kDepthTarget, true)});
-  if (peels) uses.emplace_back(before, Access::kGraphicsRead);
+  // Shaders that peel or not have it bound either way.
+  const bool binds_before = peels || sides_ == Sides::kFacing;
+  if (binds_before) uses.emplace_back(before, Access::kGraphicsRead);
   recorder.pass("layer", uses, [&](PassCommands& commands) {
     commands.beginRendering(
         {.colors = {{.image = seen_}}, .depth = &depth, .color_layer = view_index * layer_count_ + layer});
     commands.bind(peels ? next_ : first_);
     std::vector<Bound> bound = buffers_.bound({Bound(7, views_)});
-    if (peels) bound.emplace_back(8, before, buffers_.sampler());
+    if (binds_before) bound.emplace_back(8, before, buffers_.sampler());
     commands.bindResources(bound);
     commands.pushConstants(view_index);
     commands.bindVertexBuffer(buffers_.positions());

@@ -15,12 +15,18 @@ namespace nephroid {
 /// view v has layers [v · layerCount(), (v + 1) · layerCount()). Device and buffers must outlive it.
 class SurfaceLayers {
  public:
+  enum class Sides : std::uint8_t {
+    kBoth,    ///< whatever the view shows
+    kFacing,  ///< of closed meshes the outside alone, and of all surfaces what faces a parallel view (kLeastFacing)
+  };
+
   /// @param size    texels along a side
   /// @param views   >= 1
   /// @param layers  of each, >= 1
+  /// @param sides   which are seen
   /// @throws ResourceError
   SurfaceLayers(gpu::Device& device, const SceneBuffers& buffers, std::uint32_t size, std::uint32_t views,
-                std::uint32_t layers);
+                std::uint32_t layers, Sides sides = Sides::kBoth);
 
   /// @param views  their pictures are square; as many as there is room for, or fewer
   /// @param draws  of the scene, by index
@@ -47,6 +53,7 @@ class SurfaceLayers {
                    std::uint32_t view_index, std::uint32_t layer);
 
   const SceneBuffers& buffers_;
+  Sides sides_;
   gpu::GraphicsPipeline first_, next_;
   gpu::ComputePipeline places_;
   std::uint32_t view_count_ = 0;  ///< of those that were recorded last

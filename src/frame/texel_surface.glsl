@@ -50,13 +50,16 @@ struct TexelSurface {
   float distance_2;  // m², to the eye
 };
 
-TexelSurface describeTexel(vec4 texel) {
+/// @param forward  of the view, if it is parallel
+TexelSurface describeTexel(vec4 texel, vec3 forward) {
   vec3 normal = unpackUnitVector(floatBitsToUint(texel.w));
-  vec3 along = views[0].is_orthographic != 0u ? views[0].forward : texel.xyz - views[0].eye;
+  vec3 along = views[0].is_orthographic != 0u ? forward : texel.xyz - views[0].eye;
   float distance_2 = dot(along, along);
   float cos_view = dot(normal, along) * inversesqrt(max(distance_2, 1e-37));
   return TexelSurface(texel.xyz, cos_view > 0.0 ? -normal : normal, abs(cos_view), distance_2);
 }
+
+TexelSurface describeTexel(vec4 texel) { return describeTexel(texel, views[0].forward); }
 
 /// Size of a texel across the view, m.
 float texelSize(float w, vec2 size) {

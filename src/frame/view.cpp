@@ -115,6 +115,20 @@ ViewRecord makeParallelView(vec3 direction, const Bounds& across, const Bounds& 
   return view;
 }
 
+ViewRecord makeParallelView(vec3 direction, vec3 right, vec3 up, vec3 centre, const Bounds& along) {
+  // As far to both sides as the farthest corner may be.
+  const float radius = std::max({length(along.centre() - centre) + along.radius(), length(right), length(up)});
+  ViewRecord view{};
+  view.is_orthographic = 1;
+  view.forward = direction;
+  view.right = right;
+  view.up = up;
+  view.film_x = view.film_y = 0.5F;
+  view.eye = centre - 1.001F * radius * direction;
+  setClipRows(view, {0.0F, 2.002F * radius}, vec2(0.0F));
+  return view;
+}
+
 bool mayShow(const ViewRecord& view, const Bounds& bounds) {
   // Outside one of the planes with all corners: the near one and the four sides.
   std::array<bool, 5> outside{true, true, true, true, true};

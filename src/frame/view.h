@@ -29,6 +29,10 @@ ViewRecord makeParallelView(vec3 direction, const Bounds& bounds);
 /// Likewise, as wide as `across` and as deep as `along`.
 ViewRecord makeParallelView(vec3 direction, const Bounds& across, const Bounds& along);
 
+/// Likewise of a picture about `centre`, from before `along` to behind it.
+/// @param right, up  half its width and height, across the direction
+ViewRecord makeParallelView(vec3 direction, vec3 right, vec3 up, vec3 centre, const Bounds& along);
+
 /// False only if nothing inside `bounds` can be seen.
 bool mayShow(const ViewRecord& view, const Bounds& bounds);
 

@@ -66,6 +66,8 @@ struct Technique {
   /// Of a real-time technique: draws the caustic of a frame. Null: it has none.
   /// @return  null if the scene has no caustic that it could draw
   std::unique_ptr<RealtimeTechnique> (*make_realtime)(const RealtimeInputs& inputs, const ParamSet& params) = nullptr;
+  /// What make_realtime makes also says what mirrors and glass show of caustics (RealtimeTechnique::lightReceivers).
+  bool lights_receivers = false;
   /// What became of the photons of what make_realtime made. Null: nothing is known of them.
   std::vector<Ledger> (*account)(RealtimeTechnique& technique) = nullptr;
   /// Pictures of the same scene, settings and seed are identical for any thread count unless a time budget ends them.

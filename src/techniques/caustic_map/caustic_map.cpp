@@ -113,8 +113,38 @@ void CausticMap::makeSources() {
   for (Source& source : sources_) source.is_new = true;
 }
 
-void CausticMap::lightChanged(std::size_t index) { sources_[index].is_new = true; }
-void CausticMap::objectsMoved() { makeSources(); }
+void CausticMap::lightChanged(std::size_t index) {
+  sources_[index].is_new = true;
+  receiver_map_is_kept_ = false;
+}
+
+void CausticMap::objectsMoved() {
+  makeSources();
+  receiver_map_.reset();
+}
+
+const ReceiverMap* CausticMap::lightReceivers() {
+  if (!receiver_map_) {
+    receiver_map_ = std::make_unique<ReceiverMap>(inputs_.device, inputs_.scene, inputs_.buffers,
+                                                  ReceiverMapSettings{.size = settings_.receiver_map_size,
+                                                                      .reconstruction = settings_.reconstruction,
+                                                                      .splat_radius = settings_.splat_radius,
+                                                                      .directions = directions_});
+    receiver_map_is_kept_ = false;
+  }
+  return receiver_map_.get();
+}
+
+bool CausticMap::beginReceivers(gpu::CommandRecorder& recorder, const RealtimeSample& sample,
+                                const std::vector<Point>& points) {
+  // Somebody else's pictures have no mirrors of ours.
+  if (!receiver_map_ || sample.surfaces.isForeign() || receiver_map_is_kept_) return false;
+  receiver_map_is_kept_ = std::ranges::all_of(points, [&](const Point& point) { return keeps(point); });
+  float most = 0.0F;
+  for (const Point& point : points) most += point.weight * point.most_flux;
+  receiver_map_->clear(recorder, most);
+  return true;
+}
 
 Deposit& CausticMap::deposit(std::uint32_t views) {
   const std::size_t index = views > 1 ? 1 : 0;
@@ -171,19 +201,24 @@ void CausticMap::record(gpu::CommandRecorder& recorder, const RealtimeSample& sa
     if (!pixel_deposit_) pixel_deposit_ = std::make_unique<PixelDeposit>(inputs_.device, inputs_.buffers, directions_);
     pixel_deposit_->begin(recorder, sample, most);
   }
+  const bool into_receivers = beginReceivers(recorder, sample, points);
   for (const Point& point : points) {
     std::unique_ptr<Pictures>& pictures = point.source->pictures;
     if (!pictures) pictures = std::make_unique<Pictures>();
     if (point.is_new) recordPictures(recorder, point.view, *pictures);
     if (pictures->emission.empty()) continue;
+    Sinks sinks;
+    if (into_receivers)
+      sinks.emplace_back([&](const PhotonBuffer& photons) { receiver_map_->add(recorder, photons, point.weight); });
     const auto into = [&](const DepositSurfaces& surfaces, std::uint32_t views, float weight, const FluxMap& map) {
-      emit(recorder, sample.index, point, [&](const PhotonBuffer& photons) {
+      sinks.emplace_back([&, surfaces, views, weight](const PhotonBuffer& photons) {
         deposit(views).record(recorder, photons, surfaces, weight, settings_.splat_radius, inputs_.buffers.sampler(),
                               map);
       });
     };
     if (into_pixels) {
       into(pixel_deposit_->surfaces(sample), 1, sample.weight * point.weight, pixel_deposit_->map());
+      emit(recorder, sample.index, point, sinks);
       continue;
     }
     const std::uint32_t views = point.view.light.view_count;
@@ -199,6 +234,7 @@ void CausticMap::record(gpu::CommandRecorder& recorder, const RealtimeSample& sa
       into(surfaces, views, 1.0F, map);
       pictures->map_is_kept = keeps(point);
     }
+    emit(recorder, sample.index, point, sinks);
     lookUp(sample.surfaces.isForeign(), views).record(recorder, sample, sample.weight * point.weight, surfaces, map);
   }
   if (into_pixels) pixel_deposit_->finish(recorder, sample);
@@ -225,8 +261,11 @@ void CausticMap::recordPictures(gpu::CommandRecorder& recorder, const LightView&
 
 bool CausticMap::keeps(const Point& point) const { return settings_.emits_once && !point.view.varies; }
 
-void CausticMap::emit(gpu::CommandRecorder& recorder, std::uint32_t sample, const Point& point,
-                      const std::function<void(const PhotonBuffer&)>& use) {
+void CausticMap::emit(gpu::CommandRecorder& recorder, std::uint32_t sample, const Point& point, const Sinks& sinks) {
+  if (sinks.empty()) return;
+  const auto use = [&](const PhotonBuffer& photons) {
+    for (const auto& sink : sinks) sink(photons);
+  };
   if (!keeps(point)) {
     follow(
         recorder, sample, point, [&]() -> PhotonBuffer& { return photons_; }, nullptr, use);
@@ -330,6 +369,15 @@ std::vector<ParamSpec> makeParams() {
        "texels",
        "along a side of the map that parallel light is deposited into",
        {}},
+      {"receiver-map-size",
+       number(defaults.receiver_map_size),
+       16,
+       2048,
+       "texels",
+       "along a side of each view along an axis, into which light is deposited for what mirrors and glass show; fewer "
+       "where "
+       "a million would not do for all views",
+       {}},
       {"layers",
        number(defaults.layers),
        1,
@@ -426,6 +474,7 @@ CausticMapSettings makeSettings(const ParamSet& params) {
   settings.grid = count("grid");
   settings.map_size = count("map-size");
   settings.sun_map_size = count("sun-map-size");
+  settings.receiver_map_size = count("receiver-map-size");
   settings.layers = count("layers");
   settings.receiver_layers = count("receiver-layers");
   settings.internal_reflections = count("internal-reflections");
@@ -466,6 +515,7 @@ Technique makeCausticMapTechnique() {
   technique.on_vulkan = true;
   technique.params = makeParams();
   technique.make_realtime = makeCausticMap;
+  technique.lights_receivers = true;
   technique.account = [](RealtimeTechnique& drawn) { return static_cast<CausticMap&>(drawn).account(); };
   technique.render = renderCausticMap;
   return technique;

@@ -12,6 +12,7 @@
 #include "frame/light_views.h"
 #include "frame/pixel_deposit.h"
 #include "frame/realtime_technique.h"
+#include "frame/receiver_map.h"
 #include "techniques/caustic_map/look_up.h"
 #include "techniques/caustic_map/photon_ledger.h"
 #include "techniques/caustic_map/transport.h"
@@ -29,8 +30,9 @@ struct CausticMapSettings {
   std::uint32_t grid = 256;      ///< cells along a side of each of the emission's views
   std::uint32_t map_size = 256;  ///< texels along a side of each face of a point's cube map
   std::uint32_t sun_map_size = 1024;
+  std::uint32_t receiver_map_size = ReceiverMapSettings{}.size;  ///< of what mirrors and glass show, at the most
   std::uint32_t layers = 4;           ///< surfaces behind one another that light is followed through, from the light
-  std::uint32_t receiver_layers = 2;  ///< likewise that it may end on
+  std::uint32_t receiver_layers = 4;  ///< likewise that it may end on
   std::uint32_t internal_reflections = 2;
   std::uint32_t iterations = 8;           ///< to find where a ray meets a generator,
   std::uint32_t receiver_iterations = 8;  ///< and a receiver
@@ -57,6 +59,7 @@ class CausticMap : public RealtimeTechnique {
   ~CausticMap() override;
 
   void record(gpu::CommandRecorder& recorder, const RealtimeSample& sample) override;
+  const ReceiverMap* lightReceivers() override;
   void lightChanged(std::size_t index) override;
   void objectsMoved() override;
 
@@ -81,9 +84,13 @@ class CausticMap : public RealtimeTechnique {
   void follow(gpu::CommandRecorder& recorder, std::uint32_t sample, const Point& point,
               const std::function<PhotonBuffer&()>& next, PhotonLedger* ledger,
               const std::function<void(const PhotonBuffer&)>& use);
-  /// Likewise without a ledger, or what was kept.
-  void emit(gpu::CommandRecorder& recorder, std::uint32_t sample, const Point& point,
-            const std::function<void(const PhotonBuffer&)>& use);
+  /// What becomes of the photons of one point.
+  using Sinks = std::vector<std::function<void(const PhotonBuffer&)>>;
+  /// Likewise without a ledger, or what was kept, if it goes anywhere.
+  void emit(gpu::CommandRecorder& recorder, std::uint32_t sample, const Point& point, const Sinks& sinks);
+  /// Puts all that the points send on receivers into their map, unless it is there already.
+  /// @return  whether photons are to be added
+  bool beginReceivers(gpu::CommandRecorder& recorder, const RealtimeSample& sample, const std::vector<Point>& points);
   bool keeps(const Point& point) const;
   PhotonBuffer makePhotons() const;
   LookUp& lookUp(bool foreign, std::uint32_t views);
@@ -102,6 +109,8 @@ class CausticMap : public RealtimeTechnique {
   std::unique_ptr<PixelDeposit> pixel_deposit_;  ///< where pixels are deposited into
   std::vector<std::unique_ptr<Deposit>> deposits_;
   std::vector<std::unique_ptr<LookUp>> look_ups_;
+  std::unique_ptr<ReceiverMap> receiver_map_;  ///< once it is asked for
+  bool receiver_map_is_kept_ = false;          ///< what is in the map is what would be put there
   std::vector<Source> sources_;
 };
 

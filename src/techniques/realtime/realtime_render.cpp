@@ -53,8 +53,9 @@ void checkSize(const gpu::Device& device, const RenderSettings& settings) {
 FrameSettings makeSettings(const RenderSettings& settings) {
   FrameSettings frame = makeFrameSettings(settings.params);
   frame.width = settings.width, frame.height = settings.height;
-  frame.specular =
-      std::ranges::any_of(settings.layers, [](const std::string& l) { return l == "beauty" || l == "specular"; });
+  frame.specular = std::ranges::any_of(settings.layers, [](const std::string& l) {
+    return l == "beauty" || l == "specular" || l == "specular_caustic";
+  });
   frame.seed = foldSeed(settings.seed);
   return frame;
 }
@@ -125,7 +126,8 @@ class ProgressiveFrames {
 
   /// Whether it is a mean over frames.
   bool isMade(std::string_view layer) const {
-    return contains(kFrameLayers, layer) || (technique_.make_realtime && contains(kCausticLayers, layer));
+    return contains(kFrameLayers, layer) || (technique_.make_realtime && contains(kCausticLayers, layer)) ||
+           (technique_.lights_receivers && layer == "specular_caustic");
   }
 
   Image readLayer(const std::string& name) {
@@ -252,7 +254,7 @@ RenderResult renderRealtime(const Technique& technique, const SceneData& scene, 
     open.keepPipelines();
     result = frames.run();
   }
-  for (std::string& limit : describeFrameLimits(scene, makeSettings(settings)))
+  for (std::string& limit : describeFrameLimits(scene, makeSettings(settings), technique.lights_receivers))
     result.notes.push_back(std::move(limit));
   open.checkValidation();
   return result;

@@ -1,0 +1,104 @@
+#include "frame/receiver_map.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+
+#include "frame/passes.h"
+
+namespace nephroid {
+namespace {
+
+/// Texels of all views and layers together: where many views are needed, their pictures are smaller. What a photon
+/// takes grows with the texels that its cell covers.
+constexpr std::uint32_t kMostTexels = std::uint32_t{1} << 20;
+/// Surfaces behind one another in each view, all in one texel of depths: of things that stand on others, whether or not
+/// they are seen from other sides too.
+constexpr std::uint32_t kLayers = 2;
+
+// Of frame/receiver_map.glsl.
+constexpr std::uint32_t kViewsConstant = 22, kLayersConstant = 23, kDirectionsConstant = 24;
+
+std::uint32_t chooseSize(std::uint32_t wanted, std::uint32_t pictures) {
+  const float fits = std::sqrt(static_cast<float>(kMostTexels) / static_cast<float>(std::max(pictures, 1U)));
+  return std::min(wanted, static_cast<std::uint32_t>(fits) / kDepositTile * kDepositTile);
+}
+
+gpu::Buffer makeHead(gpu::Device& device, std::size_t views) {
+  return {device, sizeof(ReceiverMapHead) + std::max<std::size_t>(views, 1) * sizeof(ReceiverView),
+          VK_BUFFER_USAGE_STORAGE_BUFFER_BIT, gpu::MemoryIntent::kDevice, "views of receivers"};
+}
+
+}  // namespace
+
+ReceiverMap::ReceiverMap(gpu::Device& device, const SceneData& scene, const SceneBuffers& buffers,
+                         const ReceiverMapSettings& settings)
+    : views_(makeReceiverViews(scene, buffers.draws())), settings_(settings), nearest_(&buffers.sampler()) {
+  if (views_.views.empty()) {
+    *this = ReceiverMap(device);
+    return;
+  }
+  for (std::size_t i = 0; i < buffers.draws().size(); ++i)
+    if (catchesCaustics(buffers.draws()[i])) draws_.push_back(i);
+  const std::uint32_t pictures = viewCount() * kLayers, size = chooseSize(settings.size, pictures);
+  surfaces_ =
+      std::make_unique<SurfaceLayers>(device, buffers, size, viewCount(), kLayers, SurfaceLayers::Sides::kFacing);
+  deposit_ = std::make_unique<Deposit>(device, settings.reconstruction, viewCount(), settings.directions, kLayers);
+  map_ = FluxMap(device, size, size, pictures, settings.directions);
+  head_ = makeHead(device, views_.views.size());
+}
+
+ReceiverMap::ReceiverMap(gpu::Device& device)
+    : map_(device, 1, 1, 1, false),
+      head_(makeHead(device, 0)),
+      nothing_(device, {.format = kFloat4, .usage = VK_IMAGE_USAGE_SAMPLED_BIT, .is_array = true}, "no receivers") {}
+
+std::vector<std::byte> ReceiverMap::describeViews(float quantum) const {
+  const auto texels = static_cast<float>(size());
+  const float texel = 2.0F * views_.half / texels;
+  const ReceiverMapHead head{.irradiance = quantum / (texel * texel), .texel = texel, .pad_0 = 0, .pad_1 = 0};
+  std::vector<std::byte> bytes(sizeof(head) + views_.views.size() * sizeof(ReceiverView));
+  std::memcpy(bytes.data(), &head, sizeof(head));
+  for (std::size_t v = 0; v < views_.views.size(); ++v) {
+    const ViewRecord& view = views_.views[v];
+    const ReceiverView record{.row_x = 0.5F * texels * (view.clip_row_x + view.clip_row_w),
+                              .row_y = 0.5F * texels * (view.clip_row_y + view.clip_row_w),
+                              .forward = view.forward,
+                              .pad = 0.0F};
+    std::memcpy(bytes.data() + sizeof(head) + v * sizeof(record), &record, sizeof(record));
+  }
+  return bytes;
+}
+
+void ReceiverMap::clear(gpu::CommandRecorder& recorder, float most) {
+  if (views_.views.empty()) return;
+  if (!surfaces_are_drawn_) surfaces_->record(recorder, views_.views, draws_);
+  surfaces_are_drawn_ = true;
+  map_.clear(recorder, most);
+  recorder.upload(head_, describeViews(map_.quantum()));
+}
+
+void ReceiverMap::add(gpu::CommandRecorder& recorder, const PhotonBuffer& photons, float weight) {
+  if (views_.views.empty()) return;
+  deposit_->record(recorder, photons, {surfaces_->views(), surfaces_->surfaces(), kLayers, &views_}, weight,
+                   settings_.splat_radius, *nearest_, map_);
+}
+
+std::vector<VkDescriptorType> ReceiverMap::descriptorTypes() { return {kTable, kTexture, kTexture}; }
+
+void ReceiverMap::appendBound(std::uint32_t first, const gpu::Sampler& nearest, std::vector<Bound>& bound) const {
+  bound.insert(bound.end(), {Bound(first, head_), Bound(first + 1, surfaces_ ? surfaces_->depths() : nothing_, nearest),
+                             Bound(first + 2, map_.flux(), nearest)});
+}
+
+void ReceiverMap::appendUses(std::vector<Use>& uses) const {
+  uses.insert(uses.end(),
+              {Use(head_, Access::kComputeRead), Use(surfaces_ ? surfaces_->depths() : nothing_, Access::kComputeRead),
+               Use(map_.flux(), Access::kComputeRead)});
+}
+
+std::vector<gpu::Constant> ReceiverMap::constants() const {
+  return {{kViewsConstant, viewCount()}, {kLayersConstant, kLayers}, {kDirectionsConstant, map_.hasDirections()}};
+}
+
+}  // namespace nephroid
