@@ -26,15 +26,17 @@ struct CausticMap::Pictures {
 
 struct CausticMap::Source {
   std::unique_ptr<Pictures> pictures;
-  bool is_new = true;  ///< what stays was not drawn yet
+  bool is_new = true;      ///< what stays was not drawn yet
+  float most_flux = 0.0F;  ///< of its last point that was new, W
 };
 
 struct CausticMap::Point {
   LightView view;
   Source* source;
-  float most_flux;  ///< W
-  float weight;     ///< of all points of its source
-  bool is_new;      ///< its pictures are
+  std::vector<ViewRecord> emission;  ///< if it is new
+  float most_flux;                   ///< W
+  float weight;                      ///< of all points of its source
+  bool is_new;                       ///< its pictures are
 };
 
 namespace {
@@ -106,7 +108,7 @@ void CausticMap::makeSources() {
     // What catches nothing still stops light.
     if (!draws[i].generates) receivers_.push_back(i);
   }
-  generator_bounds_ = generatorBounds(inputs_.scene, inputs_.specular_alpha);
+  generator_hull_ = makeGeneratorHull(inputs_.scene, inputs_.specular_alpha, mesh_trees_);
   scene_bounds_ = inputs_.scene.bounds();
   lights_ = std::make_unique<LightViews>(inputs_.scene, inputs_.seed);
   sources_.resize(lights_->count());
@@ -132,6 +134,16 @@ LookUp& CausticMap::lookUp(bool foreign, std::uint32_t views) {
   return *look_ups_[index];
 }
 
+CausticMap::Point CausticMap::makePoint(const LightView& view, Source& source, float weight) const {
+  Point point{view, &source, {}, 0.0F, weight, view.varies || source.is_new};
+  if (point.is_new) {
+    point.emission = makeEmissionViews(view.light, generator_hull_, scene_bounds_);
+    source.most_flux = boundFlux(view.light, point.emission, bands_);
+  }
+  point.most_flux = source.most_flux;
+  return point;
+}
+
 std::vector<CausticMap::Point> CausticMap::choosePoints(std::uint32_t sample) {
   std::vector<Point> points;
   for (std::size_t i = 0; i < sources_.size(); ++i) {
@@ -139,8 +151,7 @@ std::vector<CausticMap::Point> CausticMap::choosePoints(std::uint32_t sample) {
     std::optional<LightView> view = lights_->make(i, sample);
     if (!view) continue;
     if (!view->varies) {
-      points.push_back(
-          {*view, &source, boundFlux(view->light, emissionViews(view->light), bands_), 1.0F, source.is_new});
+      points.push_back(makePoint(*view, source, 1.0F));
       source.is_new = false;
       continue;
     }
@@ -148,20 +159,14 @@ std::vector<CausticMap::Point> CausticMap::choosePoints(std::uint32_t sample) {
     const std::uint32_t count = is_environment ? settings_.directions : settings_.points;
     for (std::uint32_t k = 0; k < count; ++k) {
       view = lights_->make(i, sample * count + k);
-      if (!view) continue;
-      points.push_back({*view, &source, boundFlux(view->light, emissionViews(view->light), bands_),
-                        1.0F / static_cast<float>(count), true});
+      if (view) points.push_back(makePoint(*view, source, 1.0F / static_cast<float>(count)));
     }
   }
   return points;
 }
 
-std::vector<ViewRecord> CausticMap::emissionViews(const LightRecord& light) const {
-  return makeEmissionViews(light, generator_bounds_, scene_bounds_);
-}
-
 void CausticMap::record(gpu::CommandRecorder& recorder, const RealtimeSample& sample) {
-  if (generator_bounds_.empty()) return;
+  if (generator_hull_.empty()) return;
   const std::vector<Point> points = choosePoints(sample.index);
   // Somebody else's pictures say where their pixels are, but not the way back.
   const bool into_pixels = settings_.target == DepositTarget::kCamera && !sample.surfaces.isForeign();
@@ -174,7 +179,7 @@ void CausticMap::record(gpu::CommandRecorder& recorder, const RealtimeSample& sa
   for (const Point& point : points) {
     std::unique_ptr<Pictures>& pictures = point.source->pictures;
     if (!pictures) pictures = std::make_unique<Pictures>();
-    if (point.is_new) recordPictures(recorder, point.view, *pictures);
+    if (point.is_new) recordPictures(recorder, point, *pictures);
     if (pictures->emission.empty()) continue;
     const auto into = [&](const DepositSurfaces& surfaces, std::uint32_t views, float weight, const FluxMap& map) {
       emit(recorder, sample.index, point, [&](const PhotonBuffer& photons) {
@@ -204,8 +209,9 @@ void CausticMap::record(gpu::CommandRecorder& recorder, const RealtimeSample& sa
   if (into_pixels) pixel_deposit_->finish(recorder, sample);
 }
 
-void CausticMap::recordPictures(gpu::CommandRecorder& recorder, const LightView& view, Pictures& pictures) {
-  pictures.emission = emissionViews(view.light);
+void CausticMap::recordPictures(gpu::CommandRecorder& recorder, const Point& point, Pictures& pictures) {
+  const LightView& view = point.view;
+  pictures.emission = point.emission;
   pictures.map_is_kept = false;
   pictures.photons.clear();
   if (pictures.emission.empty()) return;
@@ -244,8 +250,8 @@ void CausticMap::follow(gpu::CommandRecorder& recorder, std::uint32_t sample, co
                         const std::function<PhotonBuffer&()>& next, PhotonLedger* ledger,
                         const std::function<void(const PhotonBuffer&)>& use) {
   const Pictures& pictures = *point.source->pictures;
-  const LightPictures followed{pictures.emission, generator_bounds_,    scene_bounds_,      point.view.views,
-                               *pictures.first,   *pictures.generators, *pictures.receivers};
+  const LightPictures followed{pictures.emission, generator_hull_.bounds(), scene_bounds_,      point.view.views,
+                               *pictures.first,   *pictures.generators,     *pictures.receivers};
   Sampler sampler(inputs_.seed, kCellStream, sample);
   // Mirrors let nothing in.
   const std::uint32_t last = inputs_.buffers.traits().specular.transmits ? 1 + settings_.internal_reflections : 0;
@@ -258,6 +264,7 @@ void CausticMap::follow(gpu::CommandRecorder& recorder, std::uint32_t sample, co
                               .receiver_iterations = settings_.receiver_iterations,
                               .search = settings_.search,
                               .exit = settings_.exit,
+                              .flux = settings_.flux,
                               .first_guess = settings_.first_guess,
                               .account = ledger ? &ledger->account() : nullptr,
                               .cell_lists = ledger ? nullptr : &cell_lists_};
@@ -276,7 +283,7 @@ void CausticMap::follow(gpu::CommandRecorder& recorder, std::uint32_t sample, co
 
 std::vector<Ledger> CausticMap::account() {
   std::vector<Ledger> ledgers;
-  if (generator_bounds_.empty()) return ledgers;
+  if (generator_hull_.empty()) return ledgers;
   for (std::size_t i = 0; i < sources_.size(); ++i) {
     ledgers.emplace_back();
     ledgers.back().light = i < inputs_.scene.lights.size() ? inputs_.scene.lights[i].name : "emission";
@@ -289,7 +296,7 @@ std::vector<Ledger> CausticMap::account() {
     std::unique_ptr<Pictures>& pictures = point.source->pictures;
     if (!pictures) pictures = std::make_unique<Pictures>();
     recorder.begin();
-    if (point.is_new) recordPictures(recorder, point.view, *pictures);
+    if (point.is_new) recordPictures(recorder, point, *pictures);
     ledger.begin();
     follow(
         recorder, 0, point, [&]() -> PhotonBuffer& { return photons_; }, &ledger, [](const PhotonBuffer&) {});
@@ -445,7 +452,7 @@ CausticMapSettings makeSettings(const ParamSet& params) {
 }
 
 std::unique_ptr<RealtimeTechnique> makeCausticMap(const RealtimeInputs& inputs, const ParamSet& params) {
-  if (generatorBounds(inputs.scene, inputs.specular_alpha).empty()) return nullptr;
+  if (std::ranges::none_of(inputs.buffers.draws(), &SceneBuffers::Draw::generates)) return nullptr;
   return std::make_unique<CausticMap>(inputs, makeSettings(params));
 }
 

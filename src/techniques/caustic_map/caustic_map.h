@@ -12,6 +12,7 @@
 #include "frame/light_views.h"
 #include "frame/pixel_deposit.h"
 #include "frame/realtime_technique.h"
+#include "techniques/caustic_map/generator_hull.h"
 #include "techniques/caustic_map/look_up.h"
 #include "techniques/caustic_map/photon_ledger.h"
 #include "techniques/caustic_map/transport.h"
@@ -72,8 +73,9 @@ class CausticMap : public RealtimeTechnique {
   /// A point or a direction of a source in one sample.
   struct Point;
   std::vector<Point> choosePoints(std::uint32_t sample);
-  std::vector<ViewRecord> emissionViews(const LightRecord& light) const;
-  void recordPictures(gpu::CommandRecorder& recorder, const LightView& view, Pictures& pictures);
+  /// Of a source that stays, its views are fitted only when it is new.
+  Point makePoint(const LightView& view, Source& source, float weight) const;
+  void recordPictures(gpu::CommandRecorder& recorder, const Point& point, Pictures& pictures);
   /// From the light to where its photons end, one view, branch and band after the other.
   /// @param next    where the next photons are written
   /// @param ledger  null: nobody asks what becomes of them
@@ -93,7 +95,9 @@ class CausticMap : public RealtimeTechnique {
   CausticMapSettings settings_;
   bool directions_;                                        ///< surfaces ask where light comes from
   std::vector<std::size_t> all_, generators_, receivers_;  ///< of the scene's draws
-  Bounds generator_bounds_, scene_bounds_;
+  MeshTrees mesh_trees_;
+  GeneratorHull generator_hull_;
+  Bounds scene_bounds_;
   std::unique_ptr<LightViews> lights_;
   Transport transport_;
   CellLists cell_lists_;

@@ -279,6 +279,8 @@ Met meetNext(inout Flight flight, Pictures generators, Pictures receivers) {
   }
   // From inside a closed solid there is no way but through its surface: a receiver farther on is not met.
   bool is_enclosed = flight.closed > 0 && met.instance == kNowhere;
+  // The pictures hold all generators, so what leaves them meets none; what starts beside them may.
+  if (hidden) hidden = !placeInPictures(generators, ray.origin).inside;
   if (receiver.t < met.t) met = receiver;
   if (is_enclosed || met.instance == kNowhere) {
     // Nor does light go on for ever in water that a basin bounds: the pictures do not have the place.
