@@ -376,6 +376,14 @@ std::vector<ParamSpec> makeParams() {
        "",
        "how the back face is found: as receivers are, or by Wyman's approximation",
        {"planes", "wyman"}},
+      {"flux",
+       std::string("beam"),
+       0,
+       0,
+       "",
+       "what a photon carries: the light's flux through its cell; or, for comparison, that times the cosine at the "
+       "surface, as eq. 6 of the paper has it, with which a sphere loses a third of its flux",
+       {"beam", "eq6"}},
       {"first-guess",
        0.0F,
        0,
@@ -440,6 +448,7 @@ CausticMapSettings makeSettings(const ParamSet& params) {
   settings.receiver_iterations = count("receiver-iterations");
   settings.search = searchOf(params.getString("search"));
   settings.exit = params.getString("exit") == "wyman" ? Exit::kWyman : Exit::kPlanes;
+  if (params.getString("flux") == "eq6") settings.flux = CellFlux::kEq6;
   settings.first_guess = params.getFloat("first-guess");
   settings.bands = count("bands");
   settings.points = count("points");

@@ -37,6 +37,7 @@ struct CausticMapSettings {
   std::uint32_t receiver_iterations = 8;  ///< and a receiver
   Search search = Search::kPlanes;
   Exit exit = Exit::kPlanes;
+  CellFlux flux = CellFlux::kBeam;
   float first_guess = 0.0F;       ///< of the paper's methods, m; 0: what is seen where the ray starts
   std::uint32_t max_events = 8;   ///< of class S, on the way of a photon
   std::uint32_t bands = 7;        ///< of wavelength, where a material disperses

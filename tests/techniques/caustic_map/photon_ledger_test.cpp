@@ -122,6 +122,21 @@ TEST_F(PhotonLedgerTest, AgreesWithTheReferenceForRoughBalls) {
   }
 }
 
+TEST_F(PhotonLedgerTest, EqSixLosesAThirdOfWhatABallGets) {
+  // A mirror that takes nothing: what leaves it is what came. Under a sun the mean of cos θ over a disc of rays, with
+  // sin θ = h, is ∫ √(1 − h²) 2h dh = 2/3.
+  SceneData scene = test::makeBallScene(test::makeMetal(vec3(1.0F)), 512);
+  scene.lights.push_back(test::makeSun(vec3(0.3F, -1, 0.1F), vec3(3)));
+  LightRig rig(device(), scene, 256);
+  const auto reflected = [&](CellFlux flux) {
+    const Ledger ledger = rig.ledger(0, {.flux = flux});
+    expectCloses(ledger);
+    return ledger.deposited.y + ledger.escaped.y + ledger.lostTotal().y;
+  };
+  EXPECT_NEAR(reflected(CellFlux::kBeam) / (3.0 * kPi), 1.0, 2e-3);
+  EXPECT_NEAR(reflected(CellFlux::kEq6) / (3.0 * kPi), 2.0 / 3.0, 2e-3);
+}
+
 TEST_F(PhotonLedgerTest, LightPassesPanesAsShadowsDo) {
   Material pane = test::makeGlass(1.5F);
   pane.thickness = 0.0F;
