@@ -126,6 +126,15 @@ Deposit& CausticMap::deposit(std::uint32_t views) {
   return *deposits_[index];
 }
 
+void CausticMap::smooth(gpu::CommandRecorder& recorder, const DepositSurfaces& surfaces, std::uint32_t views,
+                        const FluxMap& map) {
+  if (!(settings_.low_pass > 0.0F)) return;
+  const std::size_t index = views > 1 ? 1 : 0;
+  if (low_passes_.size() <= index) low_passes_.resize(index + 1);
+  if (!low_passes_[index]) low_passes_[index] = std::make_unique<LowPass>(inputs_.device, views, directions_);
+  low_passes_[index]->record(recorder, surfaces, settings_.low_pass, inputs_.buffers.sampler(), map);
+}
+
 LookUp& CausticMap::lookUp(bool foreign, std::uint32_t views) {
   const std::size_t index = (foreign ? 2U : 0U) + (views > 1 ? 1U : 0U);
   if (look_ups_.size() <= index) look_ups_.resize(index + 1);
@@ -202,11 +211,14 @@ void CausticMap::record(gpu::CommandRecorder& recorder, const RealtimeSample& sa
     if (!pictures->map_is_kept) {
       map.clear(recorder, point.most_flux);
       into(surfaces, views, 1.0F, map);
+      smooth(recorder, surfaces, views, map);
       pictures->map_is_kept = keeps(point);
     }
     lookUp(sample.surfaces.isForeign(), views).record(recorder, sample, sample.weight * point.weight, surfaces, map);
   }
-  if (into_pixels) pixel_deposit_->finish(recorder, sample);
+  if (!into_pixels) return;
+  smooth(recorder, pixel_deposit_->surfaces(sample), 1, pixel_deposit_->map());
+  pixel_deposit_->finish(recorder, sample);
 }
 
 void CausticMap::recordPictures(gpu::CommandRecorder& recorder, const Point& point, Pictures& pictures) {
@@ -422,6 +434,14 @@ std::vector<ParamSpec> makeParams() {
        "whether lights without a size send other photons in each sample, or keep them until something changes",
        {"every-frame", "once"}},
       {"splat-radius", defaults.splat_radius, 0.5, 32, "texels", "of a splat", {}},
+      {"low-pass",
+       defaults.low_pass,
+       0,
+       16,
+       "texels",
+       "standard deviation of a Gaussian that blurs what was deposited and keeps the flux of each surface, in the "
+       "light's map or in the camera's pixels; 0: none",
+       {}},
   };
   params.insert(params.end(), own.begin(), own.end());
   return params;
@@ -457,6 +477,7 @@ CausticMapSettings makeSettings(const ParamSet& params) {
   if (params.getString("target") == "light") settings.target = DepositTarget::kLight;
   settings.emits_once = params.getString("emit") == "once";
   settings.splat_radius = params.getFloat("splat-radius");
+  settings.low_pass = params.getFloat("low-pass");
   return settings;
 }
 

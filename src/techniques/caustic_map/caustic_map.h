@@ -10,6 +10,7 @@
 #include "core/spectrum.h"
 #include "frame/deposit.h"
 #include "frame/light_views.h"
+#include "frame/low_pass.h"
 #include "frame/pixel_deposit.h"
 #include "frame/realtime_technique.h"
 #include "techniques/caustic_map/generator_hull.h"
@@ -45,6 +46,7 @@ struct CausticMapSettings {
   std::uint32_t directions = 16;  ///< likewise of the environment
   Reconstruction reconstruction = Reconstruction::kQuads;
   float splat_radius = 1.5F;  ///< texels
+  float low_pass = 0.0F;      ///< texels: deviation of a Gaussian over what is deposited; 0: none
   DepositTarget target = DepositTarget::kCamera;
   /// Photons of lights without a size stay, in the middles of their cells, until a light or an object changes; else
   /// each sample has its own.
@@ -91,6 +93,8 @@ class CausticMap : public RealtimeTechnique {
   PhotonBuffer makePhotons() const;
   LookUp& lookUp(bool foreign, std::uint32_t views);
   Deposit& deposit(std::uint32_t views);
+  /// Blurs a map, if it is to be.
+  void smooth(gpu::CommandRecorder& recorder, const DepositSurfaces& surfaces, std::uint32_t views, const FluxMap& map);
 
   RealtimeInputs inputs_;
   CausticMapSettings settings_;
@@ -106,6 +110,7 @@ class CausticMap : public RealtimeTechnique {
   PhotonBuffer photons_;                         ///< of what is not kept
   std::unique_ptr<PixelDeposit> pixel_deposit_;  ///< where pixels are deposited into
   std::vector<std::unique_ptr<Deposit>> deposits_;
+  std::vector<std::unique_ptr<LowPass>> low_passes_;
   std::vector<std::unique_ptr<LookUp>> look_ups_;
   std::vector<Source> sources_;
 };
