@@ -63,12 +63,12 @@ ViewRecord makeCameraView(const Camera& camera, int width, int height, const Bou
   return view;
 }
 
-ViewRecord makePerspectiveView(vec3 eye, vec3 forward, vec3 up, float half_tangent, const DepthRange& range) {
+ViewRecord makePerspectiveView(vec3 eye, vec3 forward, vec3 up, vec2 half_tangents, const DepthRange& range) {
   ViewRecord view{};
   view.eye = eye;
   view.forward = forward;
-  view.right = cross(forward, up) * half_tangent;
-  view.up = up * half_tangent;
+  view.right = cross(forward, up) * half_tangents.x;
+  view.up = up * half_tangents.y;
   view.film_x = view.film_y = 0.5F;
   setClipRows(view, range, vec2(0.0F));
   return view;
@@ -78,10 +78,13 @@ ViewRecord makeCubeView(vec3 eye, int face, const Bounds& bounds) {
   static constexpr std::array<vec3, 6> kForward{{{1, 0, 0}, {-1, 0, 0}, {0, 1, 0}, {0, -1, 0}, {0, 0, 1}, {0, 0, -1}}};
   const vec3 forward = kForward[static_cast<std::size_t>(face)];
   const vec3 up = face == 2 || face == 3 ? vec3(0, 0, 1) : vec3(0, 1, 0);
-  return makePerspectiveView(eye, forward, up, 1.0F, fitDepthRange(bounds, eye, forward));
+  return makePerspectiveView(eye, forward, up, vec2(1.0F), fitDepthRange(bounds, eye, forward));
 }
 
 namespace {
+
+/// Where nothing is.
+constexpr Bounds kOrigin{vec3(0.0F), vec3(0.0F)};
 
 Bounds boundsAlong(const Frame& frame, const Bounds& bounds) {
   Bounds local;
@@ -92,21 +95,19 @@ Bounds boundsAlong(const Frame& frame, const Bounds& bounds) {
 }  // namespace
 
 ViewRecord makeParallelView(vec3 direction, const Bounds& bounds) {
-  return makeParallelView(direction, bounds, bounds);
+  const Frame frame = Frame::fromZ(direction);
+  return makeParallelView(frame, boundsAlong(frame, bounds.empty() ? kOrigin : bounds), bounds);
 }
 
-ViewRecord makeParallelView(vec3 direction, const Bounds& across, const Bounds& along) {
-  const Bounds origin{vec3(0.0F), vec3(0.0F)};
-  const Frame frame = Frame::fromZ(direction);
-  const Bounds sides = boundsAlong(frame, across.empty() ? origin : across);
-  const Bounds ends = boundsAlong(frame, along.empty() ? origin : along);
-  // A flat scene seen edge-on has no width; a sliver keeps the projection regular.
+ViewRecord makeParallelView(const Frame& frame, const Bounds& sides, const Bounds& along) {
+  const Bounds ends = boundsAlong(frame, along.empty() ? kOrigin : along);
+  // A flat scene seen edge-on has no width; a sliver keeps the projection regular, and holds what rounding moves.
   const float sliver = 1e-6F * std::max(2.0F * ends.radius(), 1e-30F);
-  const vec3 half = glm::max(0.5F * sides.extent() * 1.001F, vec3(sliver));
+  const vec3 half = 0.5F * sides.extent() + glm::max(0.0005F * sides.extent(), vec3(sliver));
   const float half_depth = std::max(0.5F * ends.extent().z * 1.001F, sliver);
   ViewRecord view{};
   view.is_orthographic = 1;
-  view.forward = direction;
+  view.forward = frame.z;
   view.right = frame.x * half.x;
   view.up = frame.y * half.y;
   view.film_x = view.film_y = 0.5F;

@@ -18,16 +18,18 @@ DepthRange fitDepthRange(const Bounds& bounds, vec3 eye, vec3 forward);
 /// @param film_offset  of the sample in its pixel, in [0, 1)², (0.5, 0.5) the centre: what is drawn is shifted by it
 ViewRecord makeCameraView(const Camera& camera, int width, int height, const Bounds& bounds, vec2 film_offset);
 
-/// A perspective view of square pixels. @param half_tangent  of half the angle of view
-ViewRecord makePerspectiveView(vec3 eye, vec3 forward, vec3 up, float half_tangent, const DepthRange& range);
+/// @param half_tangents  of half the angles of view, across and along `up`
+ViewRecord makePerspectiveView(vec3 eye, vec3 forward, vec3 up, vec2 half_tangents, const DepthRange& range);
 
 /// One of six views along +x, −x, +y, −y, +z, −z.
 ViewRecord makeCubeView(vec3 eye, int face, const Bounds& bounds);
 
 /// Parallel rays along `direction` that cover `bounds`.
 ViewRecord makeParallelView(vec3 direction, const Bounds& bounds);
-/// Likewise, as wide as `across` and as deep as `along`.
-ViewRecord makeParallelView(vec3 direction, const Bounds& across, const Bounds& along);
+/// Likewise, as wide as `sides` and as deep as `along`.
+/// @param frame  its z is the direction
+/// @param sides  in that frame; their z does not count
+ViewRecord makeParallelView(const Frame& frame, const Bounds& sides, const Bounds& along);
 
 /// Likewise of a picture about `centre`, from before `along` to behind it.
 /// @param right, up  half its width and height, across the direction

@@ -7,6 +7,7 @@
 #include <memory>
 
 #include "closed_form/ball.h"
+#include "closed_form/hollow.h"
 #include "closed_form/ring.h"
 #include "closed_form/slab.h"
 #include "closed_form/wave.h"
@@ -74,6 +75,31 @@ TEST_F(CausticMapClosedForm, ABallDrawsItsRadialProfile) {
     report(fmt::format("relative_l1_{}", c.gap), error);
     EXPECT_LE(error, 0.06) << c.gap;
   }
+}
+
+/// Share of what is emitted, of the first channel.
+double lostShare(const Ledger& ledger, LossReason reason) {
+  return ledger.lost[static_cast<std::size_t>(reason)].x / ledger.emitted.x;
+}
+
+TEST_F(CausticMapClosedForm, AHollowSphereDrawsItsRadialProfile) {
+  // Light passes four surfaces, is reflected totally at the cavity, or passes beside it. Facets are no smaller than the
+  // texels of the light's pictures, of which a search over the mesh starts.
+  const HollowCase c{{.gap = 0.05, .view_radius = 0.1}, 0.025};
+  const PlanePicture picture = renderPlane(makeHollowScene(c, 512), ballView(c.ball, 1024), "caustic-map",
+                                           {.samples = 1, .ledgers = true}, {"grid=512"});
+  const double error = relativeL1(picture.ringMeans(c.ball.view_radius, 512), hollowIrradiance(c, 512));
+  report("relative_l1", error);
+  // The flux that is not followed is nearly all of it: what the far walls of the cavity and the shell reflect.
+  EXPECT_LE(error, 0.1);
+  ASSERT_EQ(picture.ledgers.size(), 1U);
+  EXPECT_LE(worstResidual(picture.ledgers), 1e-5);
+  const double not_followed = lostShare(picture.ledgers[0], LossReason::kOtherWay);
+  const double not_found = lostShare(picture.ledgers[0], LossReason::kHidden);
+  report("not_followed", not_followed);
+  report("not_found", not_found);
+  EXPECT_GT(not_followed, 0.005);
+  EXPECT_LT(not_found, 0.01);
 }
 
 TEST_F(CausticMapClosedForm, AWaveDrawsItsFolds) {

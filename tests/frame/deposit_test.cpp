@@ -1,9 +1,12 @@
 #include "frame/deposit.h"
 
+#include <algorithm>
 #include <cmath>
+#include <cstdint>
 #include <cstring>
 #include <functional>
 
+#include "frame/low_pass.h"
 #include "frame/surface_layers.h"
 #include "frame/view.h"
 #include "support/gpu_fixture.h"
@@ -26,6 +29,12 @@ struct Deposited {
     for (const dvec3& f : flux) sum += f;
     return sum;
   }
+};
+
+struct DepositOptions {
+  Reconstruction reconstruction = Reconstruction::kQuads;
+  float low_pass = 0.0F;     ///< texels
+  bool has_a_plate = false;  ///< 0.5 m over the floor where x > 0
 };
 
 class DepositTest : public testing::GpuTest {
@@ -51,23 +60,30 @@ class DepositTest : public testing::GpuTest {
   }
 
   static Deposited deposit(const std::vector<Photon>& photons, std::span<const ViewRecord> views,
-                           Reconstruction reconstruction = Reconstruction::kQuads) {
+                           const DepositOptions& options = {}) {
     SceneData scene;
     test::addObject(scene, test::makeFloor(4.0), test::makeDiffuse(vec3(0.5F)));
+    if (options.has_a_plate)
+      test::addObject(scene, makeRectangle("plate", dvec3(1, 0.5, 0), dvec3(0, 0, 2), dvec3(1, 0, 0)),
+                      test::makeDiffuse(vec3(0.5F)));
     const auto view_count = static_cast<std::uint32_t>(views.size());
     gpu::CommandRecorder recorder(device());
     recorder.begin();
     const SceneBuffers buffers(device(), recorder, scene, 0.25F);
     SurfaceLayers layers(device(), buffers, kSize, view_count, 1);
-    const std::size_t draws[] = {0};
+    const std::vector<std::size_t> draws =
+        options.has_a_plate ? std::vector<std::size_t>{0, 1} : std::vector<std::size_t>{0};
     layers.record(recorder, views, draws);
     PhotonBuffer buffer(device(), kGrid * kGrid);
     buffer.batch = {.grid_width = kGrid, .grid_height = kGrid, .band_count = 1};
     recorder.upload(buffer.chunks()[0].buffer, std::as_bytes(std::span(photons)));
     FluxMap map(device(), kSize, kSize, view_count, true);
     map.clear(recorder, 2.0F * kGrid * kGrid);
-    Deposit pass(device(), reconstruction, view_count, true);
-    pass.record(recorder, buffer, {layers.views(), layers.surfaces(), 1}, 1.0F, 1.5F, buffers.sampler(), map);
+    const DepositSurfaces surfaces{layers.views(), layers.surfaces(), 1};
+    Deposit pass(device(), options.reconstruction, view_count, true);
+    pass.record(recorder, buffer, surfaces, 1.0F, 1.5F, buffers.sampler(), map);
+    LowPass low_pass(device(), view_count, true);
+    if (options.low_pass > 0.0F) low_pass.record(recorder, surfaces, options.low_pass, buffers.sampler(), map);
     recorder.submit();
     return read(map, view_count);
   }
@@ -154,7 +170,7 @@ TEST_F(DepositTest, QuadsAndSplatsBringTheSameFlux) {
     valid += i % 7 == 3 ? 0.0 : 1.0;
   }
   for (const Reconstruction reconstruction : {Reconstruction::kQuads, Reconstruction::kSplats}) {
-    const Deposited found = deposit(photons, std::span(&view, 1), reconstruction);
+    const Deposited found = deposit(photons, std::span(&view, 1), {.reconstruction = reconstruction});
     EXPECT_NEAR(found.total().x / valid, 1.0, 1e-4);
     EXPECT_NEAR(length(found.lost), 0.0, 1e-9);
   }
@@ -210,6 +226,64 @@ TEST_F(DepositTest, NegativeFluxOfBandsIsSubtracted) {
       std::span(&view, 1));
   EXPECT_NEAR(found.total().y / kPhotonCount, -0.25, 1e-5);
   EXPECT_EQ(found.total().z, 0.0);
+}
+
+/// Sums of each channel of the map, in steps.
+std::vector<std::int64_t> sumSteps(const Deposited& found) {
+  constexpr std::size_t kTexels = std::size_t{kSize} * kSize;
+  std::vector<std::int64_t> sums(found.steps.size() / kTexels, 0);
+  for (std::size_t i = 0; i < found.steps.size(); ++i) sums[i / kTexels] += found.steps[i];
+  return sums;
+}
+
+TEST_F(DepositTest, ALowPassMakesASpikeItsKernel) {
+  const ViewRecord view = fromAbove();
+  const std::vector<Photon> spike = emit([](double, double) { return makePhoton(0.123, 0.456); });
+  constexpr double kDeviation = 1.7;
+  const Deposited before = deposit(spike, std::span(&view, 1));
+  const Deposited after = deposit(spike, std::span(&view, 1), {.low_pass = static_cast<float>(kDeviation)});
+  const auto middle = static_cast<std::size_t>(
+      std::ranges::max_element(before.flux, {}, [](const dvec3& f) { return f.x; }) - before.flux.begin());
+  ASSERT_NEAR(before.flux[middle].x / before.total().x, 1.0, 1e-12);
+  constexpr int kReach = 6;
+  double sum = 0.0;
+  for (int i = -kReach; i <= kReach; ++i) sum += std::exp(-0.5 * i * i / (kDeviation * kDeviation));
+  for (int y = -kReach; y <= kReach; ++y)
+    for (int x = -kReach; x <= kReach; ++x) {
+      const double weight = std::exp(-0.5 * (x * x + y * y) / (kDeviation * kDeviation)) / (sum * sum);
+      const std::size_t at = middle + static_cast<std::size_t>(y * static_cast<int>(kSize) + x);
+      EXPECT_NEAR(after.flux[at].y / before.total().y, weight, 1e-6) << x << " " << y;
+    }
+  EXPECT_EQ(sumSteps(after), sumSteps(before));
+}
+
+TEST_F(DepositTest, ALowPassKeepsTheFluxOfEachSurface) {
+  // Up to the border of the picture, and on both sides of the plate's edge; of bands whose flux is negative too.
+  const std::vector<Photon> photons = emit([](double u, double v) {
+    Photon photon = makePhoton(3.9 * u - 1.95, 3.9 * v - 1.95, vec3(1.0F, -0.25F, 3.0F));
+    if (photon.position.x > 0.0F) photon.position.y = 0.5F, photon.chain = 8;
+    return photon;
+  });
+  const ViewRecord above = makeParallelView(vec3(0, -1, 0), Bounds{vec3(-2, -0.1F, -2), vec3(2, 0.6F, 2)});
+  const std::vector<ViewRecord> cube = cubeAt(vec3(-0.3F, 0.9F, 0.2F));
+  for (const std::span<const ViewRecord> views : {std::span(&above, 1), std::span(cube)}) {
+    const Deposited before = deposit(photons, views, {.has_a_plate = true});
+    const Deposited after = deposit(photons, views, {.low_pass = 2.5F, .has_a_plate = true});
+    EXPECT_EQ(sumSteps(after), sumSteps(before));
+    EXPECT_NE(after.steps, before.steps);
+    if (views.size() > 1) continue;
+    // The plate's edge is in the middle of the picture.
+    std::int64_t left_before = 0, left_after = 0;
+    for (std::size_t i = 0; i < std::size_t{kSize} * kSize; ++i) {
+      const vec3 right = normalize(above.right);
+      const double column = (static_cast<double>(i % kSize) + 0.5) / kSize - 0.5;
+      const double row = 0.5 - (static_cast<double>(i / kSize) + 0.5) / kSize;
+      if (column * right.x + row * normalize(above.up).x > 0.0) continue;
+      left_before += before.steps[i], left_after += after.steps[i];
+    }
+    EXPECT_GT(left_before, 0);
+    EXPECT_EQ(left_after, left_before);
+  }
 }
 
 }  // namespace

@@ -110,7 +110,7 @@ TEST_F(SurfaceLayersTest, NothingIsSeenOfNothing) {
   const SceneData scene = test::makeBallScene(test::makeGlass(1.5F));
   ViewRecord view = makeParallelView(vec3(0, -1, 0), scene.bounds());
   // Far beside the scene.
-  view = makePerspectiveView(vec3(100, 0, 0), vec3(1, 0, 0), vec3(0, 1, 0), 0.1F, {1.0F, 10.0F});
+  view = makePerspectiveView(vec3(100, 0, 0), vec3(1, 0, 0), vec3(0, 1, 0), vec2(0.1F), {1.0F, 10.0F});
   const Layers layers = draw(scene, view, 2);
   for (std::size_t i = 0; i < kSize * kSize; ++i) ASSERT_FALSE(layers.isThere(0, i) || layers.isThere(1, i));
 }

@@ -26,15 +26,17 @@ struct CausticMap::Pictures {
 
 struct CausticMap::Source {
   std::unique_ptr<Pictures> pictures;
-  bool is_new = true;  ///< what stays was not drawn yet
+  bool is_new = true;      ///< what stays was not drawn yet
+  float most_flux = 0.0F;  ///< of its last point that was new, W
 };
 
 struct CausticMap::Point {
   LightView view;
   Source* source;
-  float most_flux;  ///< W
-  float weight;     ///< of all points of its source
-  bool is_new;      ///< its pictures are
+  std::vector<ViewRecord> emission;  ///< if it is new
+  float most_flux;                   ///< W
+  float weight;                      ///< of all points of its source
+  bool is_new;                       ///< its pictures are
 };
 
 namespace {
@@ -106,7 +108,7 @@ void CausticMap::makeSources() {
     // What catches nothing still stops light.
     if (!draws[i].generates) receivers_.push_back(i);
   }
-  generator_bounds_ = generatorBounds(inputs_.scene, inputs_.specular_alpha);
+  generator_hull_ = makeGeneratorHull(inputs_.scene, inputs_.specular_alpha, mesh_trees_);
   scene_bounds_ = inputs_.scene.bounds();
   lights_ = std::make_unique<LightViews>(inputs_.scene, inputs_.seed);
   sources_.resize(lights_->count());
@@ -154,12 +156,31 @@ Deposit& CausticMap::deposit(std::uint32_t views) {
   return *deposits_[index];
 }
 
+void CausticMap::smooth(gpu::CommandRecorder& recorder, const DepositSurfaces& surfaces, std::uint32_t views,
+                        const FluxMap& map) {
+  if (!(settings_.low_pass > 0.0F)) return;
+  const std::size_t index = views > 1 ? 1 : 0;
+  if (low_passes_.size() <= index) low_passes_.resize(index + 1);
+  if (!low_passes_[index]) low_passes_[index] = std::make_unique<LowPass>(inputs_.device, views, directions_);
+  low_passes_[index]->record(recorder, surfaces, settings_.low_pass, inputs_.buffers.sampler(), map);
+}
+
 LookUp& CausticMap::lookUp(bool foreign, std::uint32_t views) {
   const std::size_t index = (foreign ? 2U : 0U) + (views > 1 ? 1U : 0U);
   if (look_ups_.size() <= index) look_ups_.resize(index + 1);
   if (!look_ups_[index])
     look_ups_[index] = std::make_unique<LookUp>(inputs_.device, inputs_.buffers, foreign, views, directions_);
   return *look_ups_[index];
+}
+
+CausticMap::Point CausticMap::makePoint(const LightView& view, Source& source, float weight) const {
+  Point point{view, &source, {}, 0.0F, weight, view.varies || source.is_new};
+  if (point.is_new) {
+    point.emission = makeEmissionViews(view.light, generator_hull_, scene_bounds_);
+    source.most_flux = boundFlux(view.light, point.emission, bands_);
+  }
+  point.most_flux = source.most_flux;
+  return point;
 }
 
 std::vector<CausticMap::Point> CausticMap::choosePoints(std::uint32_t sample) {
@@ -169,8 +190,7 @@ std::vector<CausticMap::Point> CausticMap::choosePoints(std::uint32_t sample) {
     std::optional<LightView> view = lights_->make(i, sample);
     if (!view) continue;
     if (!view->varies) {
-      points.push_back(
-          {*view, &source, boundFlux(view->light, emissionViews(view->light), bands_), 1.0F, source.is_new});
+      points.push_back(makePoint(*view, source, 1.0F));
       source.is_new = false;
       continue;
     }
@@ -178,20 +198,14 @@ std::vector<CausticMap::Point> CausticMap::choosePoints(std::uint32_t sample) {
     const std::uint32_t count = is_environment ? settings_.directions : settings_.points;
     for (std::uint32_t k = 0; k < count; ++k) {
       view = lights_->make(i, sample * count + k);
-      if (!view) continue;
-      points.push_back({*view, &source, boundFlux(view->light, emissionViews(view->light), bands_),
-                        1.0F / static_cast<float>(count), true});
+      if (view) points.push_back(makePoint(*view, source, 1.0F / static_cast<float>(count)));
     }
   }
   return points;
 }
 
-std::vector<ViewRecord> CausticMap::emissionViews(const LightRecord& light) const {
-  return makeEmissionViews(light, generator_bounds_, scene_bounds_);
-}
-
 void CausticMap::record(gpu::CommandRecorder& recorder, const RealtimeSample& sample) {
-  if (generator_bounds_.empty()) return;
+  if (generator_hull_.empty()) return;
   const std::vector<Point> points = choosePoints(sample.index);
   // Somebody else's pictures say where their pixels are, but not the way back.
   const bool into_pixels = settings_.target == DepositTarget::kCamera && !sample.surfaces.isForeign();
@@ -205,7 +219,7 @@ void CausticMap::record(gpu::CommandRecorder& recorder, const RealtimeSample& sa
   for (const Point& point : points) {
     std::unique_ptr<Pictures>& pictures = point.source->pictures;
     if (!pictures) pictures = std::make_unique<Pictures>();
-    if (point.is_new) recordPictures(recorder, point.view, *pictures);
+    if (point.is_new) recordPictures(recorder, point, *pictures);
     if (pictures->emission.empty()) continue;
     Sinks sinks;
     if (into_receivers)
@@ -232,16 +246,20 @@ void CausticMap::record(gpu::CommandRecorder& recorder, const RealtimeSample& sa
     if (!pictures->map_is_kept) {
       map.clear(recorder, point.most_flux);
       into(surfaces, views, 1.0F, map);
+      smooth(recorder, surfaces, views, map);
       pictures->map_is_kept = keeps(point);
     }
     emit(recorder, sample.index, point, sinks);
     lookUp(sample.surfaces.isForeign(), views).record(recorder, sample, sample.weight * point.weight, surfaces, map);
   }
-  if (into_pixels) pixel_deposit_->finish(recorder, sample);
+  if (!into_pixels) return;
+  smooth(recorder, pixel_deposit_->surfaces(sample), 1, pixel_deposit_->map());
+  pixel_deposit_->finish(recorder, sample);
 }
 
-void CausticMap::recordPictures(gpu::CommandRecorder& recorder, const LightView& view, Pictures& pictures) {
-  pictures.emission = emissionViews(view.light);
+void CausticMap::recordPictures(gpu::CommandRecorder& recorder, const Point& point, Pictures& pictures) {
+  const LightView& view = point.view;
+  pictures.emission = point.emission;
   pictures.map_is_kept = false;
   pictures.photons.clear();
   if (pictures.emission.empty()) return;
@@ -283,8 +301,8 @@ void CausticMap::follow(gpu::CommandRecorder& recorder, std::uint32_t sample, co
                         const std::function<PhotonBuffer&()>& next, PhotonLedger* ledger,
                         const std::function<void(const PhotonBuffer&)>& use) {
   const Pictures& pictures = *point.source->pictures;
-  const LightPictures followed{pictures.emission, generator_bounds_,    scene_bounds_,      point.view.views,
-                               *pictures.first,   *pictures.generators, *pictures.receivers};
+  const LightPictures followed{pictures.emission, generator_hull_.bounds(), scene_bounds_,      point.view.views,
+                               *pictures.first,   *pictures.generators,     *pictures.receivers};
   Sampler sampler(inputs_.seed, kCellStream, sample);
   // Mirrors let nothing in.
   const std::uint32_t last = inputs_.buffers.traits().specular.transmits ? 1 + settings_.internal_reflections : 0;
@@ -297,6 +315,7 @@ void CausticMap::follow(gpu::CommandRecorder& recorder, std::uint32_t sample, co
                               .receiver_iterations = settings_.receiver_iterations,
                               .search = settings_.search,
                               .exit = settings_.exit,
+                              .flux = settings_.flux,
                               .first_guess = settings_.first_guess,
                               .account = ledger ? &ledger->account() : nullptr,
                               .cell_lists = ledger ? nullptr : &cell_lists_};
@@ -315,7 +334,7 @@ void CausticMap::follow(gpu::CommandRecorder& recorder, std::uint32_t sample, co
 
 std::vector<Ledger> CausticMap::account() {
   std::vector<Ledger> ledgers;
-  if (generator_bounds_.empty()) return ledgers;
+  if (generator_hull_.empty()) return ledgers;
   for (std::size_t i = 0; i < sources_.size(); ++i) {
     ledgers.emplace_back();
     ledgers.back().light = i < inputs_.scene.lights.size() ? inputs_.scene.lights[i].name : "emission";
@@ -328,7 +347,7 @@ std::vector<Ledger> CausticMap::account() {
     std::unique_ptr<Pictures>& pictures = point.source->pictures;
     if (!pictures) pictures = std::make_unique<Pictures>();
     recorder.begin();
-    if (point.is_new) recordPictures(recorder, point.view, *pictures);
+    if (point.is_new) recordPictures(recorder, point, *pictures);
     ledger.begin();
     follow(
         recorder, 0, point, [&]() -> PhotonBuffer& { return photons_; }, &ledger, [](const PhotonBuffer&) {});
@@ -417,6 +436,14 @@ std::vector<ParamSpec> makeParams() {
        "",
        "how the back face is found: as receivers are, or by Wyman's approximation",
        {"planes", "wyman"}},
+      {"flux",
+       std::string("beam"),
+       0,
+       0,
+       "",
+       "what a photon carries: the light's flux through its cell; or, for comparison, that times the cosine at the "
+       "surface, as eq. 6 of the paper has it, with which a sphere loses a third of its flux",
+       {"beam", "eq6"}},
       {"first-guess",
        0.0F,
        0,
@@ -455,6 +482,14 @@ std::vector<ParamSpec> makeParams() {
        "whether lights without a size send other photons in each sample, or keep them until something changes",
        {"every-frame", "once"}},
       {"splat-radius", defaults.splat_radius, 0.5, 32, "texels", "of a splat", {}},
+      {"low-pass",
+       defaults.low_pass,
+       0,
+       16,
+       "texels",
+       "standard deviation of a Gaussian that blurs what was deposited and keeps the flux of each surface, in the "
+       "light's map or in the camera's pixels; 0: none",
+       {}},
   };
   params.insert(params.end(), own.begin(), own.end());
   return params;
@@ -482,6 +517,7 @@ CausticMapSettings makeSettings(const ParamSet& params) {
   settings.receiver_iterations = count("receiver-iterations");
   settings.search = searchOf(params.getString("search"));
   settings.exit = params.getString("exit") == "wyman" ? Exit::kWyman : Exit::kPlanes;
+  if (params.getString("flux") == "eq6") settings.flux = CellFlux::kEq6;
   settings.first_guess = params.getFloat("first-guess");
   settings.bands = count("bands");
   settings.points = count("points");
@@ -490,11 +526,12 @@ CausticMapSettings makeSettings(const ParamSet& params) {
   if (params.getString("target") == "light") settings.target = DepositTarget::kLight;
   settings.emits_once = params.getString("emit") == "once";
   settings.splat_radius = params.getFloat("splat-radius");
+  settings.low_pass = params.getFloat("low-pass");
   return settings;
 }
 
 std::unique_ptr<RealtimeTechnique> makeCausticMap(const RealtimeInputs& inputs, const ParamSet& params) {
-  if (generatorBounds(inputs.scene, inputs.specular_alpha).empty()) return nullptr;
+  if (std::ranges::none_of(inputs.buffers.draws(), &SceneBuffers::Draw::generates)) return nullptr;
   return std::make_unique<CausticMap>(inputs, makeSettings(params));
 }
 

@@ -10,9 +10,11 @@
 #include "core/spectrum.h"
 #include "frame/deposit.h"
 #include "frame/light_views.h"
+#include "frame/low_pass.h"
 #include "frame/pixel_deposit.h"
 #include "frame/realtime_technique.h"
 #include "frame/receiver_map.h"
+#include "techniques/caustic_map/generator_hull.h"
 #include "techniques/caustic_map/look_up.h"
 #include "techniques/caustic_map/photon_ledger.h"
 #include "techniques/caustic_map/transport.h"
@@ -38,6 +40,7 @@ struct CausticMapSettings {
   std::uint32_t receiver_iterations = 8;  ///< and a receiver
   Search search = Search::kPlanes;
   Exit exit = Exit::kPlanes;
+  CellFlux flux = CellFlux::kBeam;
   float first_guess = 0.0F;       ///< of the paper's methods, m; 0: what is seen where the ray starts
   std::uint32_t max_events = 8;   ///< of class S, on the way of a photon
   std::uint32_t bands = 7;        ///< of wavelength, where a material disperses
@@ -45,6 +48,7 @@ struct CausticMapSettings {
   std::uint32_t directions = 16;  ///< likewise of the environment
   Reconstruction reconstruction = Reconstruction::kQuads;
   float splat_radius = 1.5F;  ///< texels
+  float low_pass = 0.0F;      ///< texels: deviation of a Gaussian over what is deposited; 0: none
   DepositTarget target = DepositTarget::kCamera;
   /// Photons of lights without a size stay, in the middles of their cells, until a light or an object changes; else
   /// each sample has its own.
@@ -75,8 +79,9 @@ class CausticMap : public RealtimeTechnique {
   /// A point or a direction of a source in one sample.
   struct Point;
   std::vector<Point> choosePoints(std::uint32_t sample);
-  std::vector<ViewRecord> emissionViews(const LightRecord& light) const;
-  void recordPictures(gpu::CommandRecorder& recorder, const LightView& view, Pictures& pictures);
+  /// Of a source that stays, its views are fitted only when it is new.
+  Point makePoint(const LightView& view, Source& source, float weight) const;
+  void recordPictures(gpu::CommandRecorder& recorder, const Point& point, Pictures& pictures);
   /// From the light to where its photons end, one view, branch and band after the other.
   /// @param next    where the next photons are written
   /// @param ledger  null: nobody asks what becomes of them
@@ -95,12 +100,16 @@ class CausticMap : public RealtimeTechnique {
   PhotonBuffer makePhotons() const;
   LookUp& lookUp(bool foreign, std::uint32_t views);
   Deposit& deposit(std::uint32_t views);
+  /// Blurs a map, if it is to be.
+  void smooth(gpu::CommandRecorder& recorder, const DepositSurfaces& surfaces, std::uint32_t views, const FluxMap& map);
 
   RealtimeInputs inputs_;
   CausticMapSettings settings_;
   bool directions_;                                        ///< surfaces ask where light comes from
   std::vector<std::size_t> all_, generators_, receivers_;  ///< of the scene's draws
-  Bounds generator_bounds_, scene_bounds_;
+  MeshTrees mesh_trees_;
+  GeneratorHull generator_hull_;
+  Bounds scene_bounds_;
   std::unique_ptr<LightViews> lights_;
   Transport transport_;
   CellLists cell_lists_;
@@ -108,6 +117,7 @@ class CausticMap : public RealtimeTechnique {
   PhotonBuffer photons_;                         ///< of what is not kept
   std::unique_ptr<PixelDeposit> pixel_deposit_;  ///< where pixels are deposited into
   std::vector<std::unique_ptr<Deposit>> deposits_;
+  std::vector<std::unique_ptr<LowPass>> low_passes_;
   std::vector<std::unique_ptr<LookUp>> look_ups_;
   std::unique_ptr<ReceiverMap> receiver_map_;  ///< once it is asked for
   bool receiver_map_is_kept_ = false;          ///< what is in the map is what would be put there

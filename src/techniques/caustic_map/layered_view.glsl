@@ -133,8 +133,9 @@ Look lookAt(vec3 place, Pictures pictures, sampler2DArray surfaces, uint layer) 
 }
 
 /// Newton's method from a place on the ray, and from where that ends over the surface to the ray.
-/// @return  nothing if it leads nowhere, or to where the ray starts
-Met approach(Ray ray, float first, Start start, Pictures pictures, usampler2DArray seen_layers,
+/// @param least, most  where it is sought, m
+/// @return             nothing if it leads nowhere, or to where the ray starts
+Met approach(Ray ray, float first, float least, float most, Start start, Pictures pictures, usampler2DArray seen_layers,
              sampler2DArray surfaces, uint layer, uint iterations) {
   float t = first, last = first, texel_size = 0.0;
   ivec3 texel = ivec3(0);
@@ -142,18 +143,20 @@ Met approach(Ray ray, float first, Start start, Pictures pictures, usampler2DArr
   bool found = false, converged = false, lost = false;
   for (uint i = 0u; i < iterations && !converged && !lost; ++i) {
     Look look = lookAt(ray.origin + t * ray.dir, pictures, surfaces, layer);
-    if (!look.shown) {
-      // Too far, or past an edge: half-way back to where something was.
-      lost = i == 0u;
-      t = 0.5 * (t + last);
-      continue;
-    }
     vec3 normal = unpackUnitVector(floatBitsToUint(look.surface.w));
     vec3 to = look.surface.xyz - ray.origin;
     float along = dot(normal, ray.dir);
     // Seen edge-on a plane says nothing; its distance does, as in the paper.
     float next = abs(along) > 0.02 ? dot(normal, to) / along : length(to);
     if (next < 0.0) next = length(to);
+    // Past the outline of what is within another body the layer goes on with that one's far side.
+    bool is_elsewhere = i > 0u && (next < 2.0 * least - most || next > 2.0 * most - least);
+    if (!look.shown || is_elsewhere) {
+      // Too far, or past an edge: half-way back to where something was.
+      lost = i == 0u;
+      t = 0.5 * (t + last);
+      continue;
+    }
     converged = i > 0u && abs(next - t) <= kConverged * look.texel_size;
     found = true;
     texel = look.texel;
@@ -209,6 +212,8 @@ struct March {
   float slack;  // m, two texels
   uint candidates;    // layers that the ray may have passed in the last step
   uint shown_at_end;  // of these, those that are shown where it ends; the others where it begins
+  uint outlined;      // and those that are shown at one of its ends only,
+  uint from_behind;   // and those that the ray comes to from behind
   bool hidden;      // it left the pictures before the scene
 };
 
@@ -230,6 +235,8 @@ void marchOn(inout March march, Ray ray, float t_end, float t_enough, Pictures p
     uint behind = (march.behind & ~march.near) | (now.behind & march.near);
     march.candidates = ((behind ^ now.behind) & march.shown & now.shown) | (march.shown ^ now.shown);
     march.shown_at_end = now.shown;
+    march.outlined = march.shown ^ now.shown;
+    march.from_behind = march.shown & now.shown & behind & ~now.behind;
     if (!now.inside) {
       march.hidden = march.step <= kSteps;
       march.step = kSteps + 1u;
@@ -241,6 +248,21 @@ void marchOn(inout March march, Ray ray, float t_end, float t_enough, Pictures p
   }
 }
 
+/// Halvings of a step to where an outline is: a sixteenth of it is near enough for Newton's method.
+const uint kOutlineHalvings = 4u;
+
+/// Where in a step a layer is shown, next to where it is not.
+float outlineIn(March march, Ray ray, Pictures pictures, sampler2DArray surfaces, uint layer) {
+  bool at_end = (march.shown_at_end >> layer & 1u) != 0u;
+  float shown = at_end ? march.t : march.t_before, beside = at_end ? march.t_before : march.t;
+  for (uint i = 0u; i < kOutlineHalvings; ++i) {
+    float middle = 0.5 * (shown + beside);
+    if (lookAt(ray.origin + middle * ray.dir, pictures, surfaces, layer).shown) shown = middle;
+    else beside = middle;
+  }
+  return shown;
+}
+
 /// The nearest surface over all layers, by steps to where the ray may pass one, and Newton's method there.
 /// @param t_end     where the ray leaves the scene
 /// @param t_enough  what is met farther away does not count
@@ -249,7 +271,8 @@ Met meetLayers(Ray ray, float t_end, float t_enough, Start start, Pictures pictu
                sampler2DArray surfaces, sampler2DArray depths, uint iterations, inout bool hidden) {
   Met best = Met(kFarAway, 0.0, 0.0, kNowhere, 0u);
   Sides first = sidesOf(ray.origin, pictures, depths);
-  March march = March(0u, 0.0, 0.0, first.shown, first.behind, first.near, 2.0 * first.texel_size, 0u, 0u, false);
+  March march =
+      March(0u, 0.0, 0.0, first.shown, first.behind, first.near, 2.0 * first.texel_size, 0u, 0u, 0u, 0u, false);
   while (best.instance == kNowhere &&
          ((march.step <= kSteps && march.t - march.slack <= t_enough) || march.candidates != 0u)) {
     marchOn(march, ray, t_end, t_enough, pictures, depths);
@@ -259,10 +282,22 @@ Met meetLayers(Ray ray, float t_end, float t_enough, Start start, Pictures pictu
       bool any_left = march.candidates != 0u;
       march.candidates &= ~(1u << layer);
       if (any_left) {
-        float first = (march.shown_at_end >> layer & 1u) != 0u ? march.t : march.t_before;
-        Met met = approach(ray, first, start, pictures, seen_layers, surfaces, layer, iterations);
-        // What is met lies in the step, or Newton's method has led to another place.
-        if (met.t >= march.t_before - march.slack && met.t <= march.t + march.slack && met.t < best.t) best = met;
+        float end = (march.shown_at_end >> layer & 1u) != 0u ? march.t : march.t_before;
+        bool is_outlined = (march.outlined >> layer & 1u) != 0u, is_done = false;
+        bool is_from_behind = (march.from_behind >> layer & 1u) != 0u;
+        // Where a ray goes in and out again through the same layer, below the widest part of something round, Newton's
+        // method leads from within it to where it goes out; from its outline, or from before, to where it goes in.
+        float first = is_from_behind ? march.t_before : end;
+        if (is_outlined) first = outlineIn(march, ray, pictures, surfaces, layer);
+        for (uint attempt = 0u; attempt < 2u && !is_done; ++attempt) {
+          Met met = approach(ray, first, march.t_before, march.t, start, pictures, seen_layers, surfaces, layer,
+                             iterations);
+          // What is met lies in the step, or Newton's method has led to another place.
+          bool is_in_step = met.t >= march.t_before - march.slack && met.t <= march.t + march.slack;
+          if (is_in_step && met.t < best.t) best = met;
+          is_done = is_in_step || first == end;
+          first = end;
+        }
       }
     } while (march.candidates != 0u);
   }

@@ -32,6 +32,7 @@ layout(constant_id = 24) const uint kGeneratorLayers = 1u;
 layout(constant_id = 25) const uint kReceiverViews = 1u;
 layout(constant_id = 26) const uint kReceiverLayers = 1u;
 layout(constant_id = 27) const bool kListed = false;
+layout(constant_id = 28) const bool kFluxEq6 = false;
 layout(local_size_x = 8, local_size_y = 8) in;
 layout(scalar, set = 0, binding = 8) readonly buffer Lights { LightRecord lights[]; };
 layout(set = 0, binding = 9) uniform usampler2DArray first_seen;  // of the emission's views: all that there is
@@ -170,6 +171,16 @@ void resume(inout Flight flight) {
   flight.closed = fork.closed;
 }
 
+/// The flux of eq. 6, (N·L)/V times what the V cells that see a generator get together: V drops out where these carry
+/// the same, as those of a sun do, and the cosine is one too many. What went before is made less too, so that the
+/// account still closes.
+void takeFluxEq6(inout Flight flight, float cos_theta) {
+  flight.path.throughput *= cos_theta;
+  flight.account.emitted *= cos_theta;
+  flight.account.blocked *= cos_theta;
+  flight.account.absorbed *= cos_theta;
+}
+
 /// Refracts or reflects the flight at a surface.
 void bend(inout Flight flight, Met met) {
   uint events = flight.path.events;
@@ -180,6 +191,7 @@ void bend(inout Flight flight, Met met) {
     if (flight.path.ended) flight.outcome = kOutcomeInterior;
     return;
   }
+  if (kFluxEq6 && events == 0u) takeFluxEq6(flight, abs(dot(flight.path.ray.dir, e.surface.shading)));
   Medium from = fetchMedium(e.boundary.from), to = fetchMedium(e.boundary.to);
   optics.ior_from = iorOf(from, flight.path.wavelength_nm);
   if (e.crossing.is_solid) optics.ior_to = iorOf(to, flight.path.wavelength_nm);
@@ -267,6 +279,8 @@ Met meetNext(inout Flight flight, Pictures generators, Pictures receivers) {
   else
     met = meetLayers(ray, t_end, kFarAway, start, generators, generator_seen, generator_surfaces, generator_depths,
                      push.iterations, hidden);
+  // The pictures hold all generators, so what leaves them meets none; what starts beside them may.
+  if (hidden) hidden = !placeInPictures(generators, ray.origin).inside;
   t_end = leaveBox(ray, push.scene_lower, push.scene_upper);
   Met receiver;
   if (kSearch == kSearchPlanes) {

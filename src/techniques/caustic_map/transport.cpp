@@ -67,7 +67,8 @@ const gpu::ComputePipeline& Transport::pipelineFor(const LightPictures& pictures
       settings.account != nullptr ? 1U : 0U,     static_cast<std::uint32_t>(settings.search),
       static_cast<std::uint32_t>(settings.exit), static_cast<std::uint32_t>(pictures.emission_views.size()),
       pictures.generators.layerCount(),          static_cast<std::uint32_t>(pictures.receiver_views.size()),
-      pictures.receivers.layerCount(),           settings.cell_lists != nullptr ? 1U : 0U};
+      pictures.receivers.layerCount(),           settings.cell_lists != nullptr ? 1U : 0U,
+      settings.flux == CellFlux::kEq6 ? 1U : 0U};
   const auto found = pipelines_.find(key);
   if (found != pipelines_.end()) return found->second;
   std::vector<gpu::Constant> constants = buffers_.traits().pathConstants();

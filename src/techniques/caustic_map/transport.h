@@ -36,6 +36,10 @@ enum class Search : std::uint8_t {
 };
 /// How light leaves what it has entered: exactly, or at the back face that Wyman's approximation finds.
 enum class Exit : std::uint8_t { kPlanes = kExitPlanes, kWyman = kExitWyman };
+/// What a photon carries: the light's flux through its cell, or that times the cosine at the surface that it meets
+/// first, as eq. 6 of the paper has it. Laid out in the light's view a cell has that cosine already, so the latter
+/// loses flux, of a sphere under a sun a third: for comparison.
+enum class CellFlux : std::uint8_t { kBeam, kEq6 };
 
 struct CellLists;
 
@@ -55,6 +59,7 @@ struct TransportSettings {
   std::uint32_t receiver_iterations = 8;  ///< and a receiver
   Search search = Search::kPlanes;
   Exit exit = Exit::kPlanes;
+  CellFlux flux = CellFlux::kBeam;
   float first_guess = 0.0F;  ///< of the paper's methods, m; 0: what is seen where the ray starts
   /// For the ledger (PhotonLedger::account): what stays on the way. Of no use without it, and it takes time.
   const gpu::Buffer* account = nullptr;

@@ -1,6 +1,7 @@
 // The technique `caustic-map` in frames, by whatever Vulkan device there is.
 #include "techniques/caustic_map/caustic_map.h"
 
+#include <algorithm>
 #include <cmath>
 #include <functional>
 #include <glm/gtc/matrix_transform.hpp>
@@ -121,6 +122,21 @@ TEST_F(CausticMapTest, TheLightsMapShowsWhatPixelsShow) {
     EXPECT_NEAR(test::meanOf(map).x / test::meanOf(pixels).x, 1.0, 0.02) << is_sun;
     // Folds are narrower than pixels.
     EXPECT_LT(test::relativeDifference(map, pixels), 0.2) << is_sun;
+  }
+}
+
+TEST_F(CausticMapTest, ALowPassBlursAndKeepsTheFlux) {
+  // The floor squarely from above, through nothing: each pixel covers as much of it.
+  const SceneData scene = makeSunlitBall(test::makeGlass(1.5F));
+  const Camera camera = makeCamera("floor", vec3(0, 0.1F, 0), vec3(0), 0.0F, 8.0F);
+  const Image pixels = draw(scene, camera);
+  for (const DepositTarget target : {DepositTarget::kCamera, DepositTarget::kLight}) {
+    const Image sharp = draw(scene, camera, {.sun_map_size = 128, .target = target});
+    const Image blurred = draw(scene, camera, {.sun_map_size = 128, .low_pass = 2.0F, .target = target});
+    // A map is looked up in the middles of pixels, which are three of its texels wide.
+    const double tolerance = target == DepositTarget::kCamera ? 1e-5 : 0.02;
+    EXPECT_NEAR(test::meanOf(blurred).x / test::meanOf(pixels).x, 1.0, tolerance);
+    EXPECT_LT(*std::ranges::max_element(blurred.pixels), 0.5F * *std::ranges::max_element(sharp.pixels));
   }
 }
 

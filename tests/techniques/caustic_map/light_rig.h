@@ -42,7 +42,8 @@ class LightRig {
         scene_(scene),
         grid_(grid),
         view_(*LightViews(scene, 0).make(0, 0)),
-        views_(makeEmissionViews(view_.light, generatorBounds(scene, 0.25F), scene.bounds())),
+        hull_(makeHull(scene)),
+        views_(makeEmissionViews(view_.light, hull_, scene.bounds())),
         recorder_(device),
         buffers_(device, recorder_, scene, 0.25F),
         first_(device, buffers_, grid, viewCount(), 1),
@@ -103,7 +104,7 @@ class LightRig {
   }
 
   LightPictures pictures() const {
-    return {views_, generatorBounds(scene_, 0.25F), scene_.bounds(), view_.views, first_, inner_, outer_};
+    return {views_, hull_.bounds(), scene_.bounds(), view_.views, first_, inner_, outer_};
   }
   const std::vector<ViewRecord>& views() const { return views_; }
   std::uint32_t viewCount() const { return static_cast<std::uint32_t>(views_.size()); }
@@ -141,6 +142,11 @@ class LightRig {
     explicit Recorder(gpu::Device& device) : gpu::CommandRecorder(device) { begin(); }
   };
 
+  static GeneratorHull makeHull(const SceneData& scene) {
+    MeshTrees trees;
+    return makeGeneratorHull(scene, 0.25F, trees);
+  }
+
   Flown read() {
     Flown flown;
     flown.photons = readPhotons(device_, photons_);
@@ -152,6 +158,7 @@ class LightRig {
   const SceneData& scene_;
   std::uint32_t grid_;
   LightView view_;
+  GeneratorHull hull_;
   std::vector<ViewRecord> views_;
   Recorder recorder_;
   SceneBuffers buffers_;

@@ -120,6 +120,17 @@ TEST_F(TransportTest, ABallFocuses) {
   EXPECT_LT(sum / through, 2e-4);
 }
 
+TEST_F(TransportTest, CellsThatMissABallAreThoseInTheCorners) {
+  // A disc in its square has π/4 of it, less what the picture's margin of 0.1 % a side takes.
+  for (const vec3& dir : {vec3(0, -1, 0), vec3(1, -2, 0.7F)}) {
+    SceneData scene = test::makeBallScene(test::makeGlass(1.5F), 256);
+    scene.lights.push_back(test::makeSun(dir, vec3(1)));
+    const Flown flown = LightRig(device(), scene).fly({.branch = 0});
+    const int beside = flown.outcomes.at(kOutcomeBlocked);
+    EXPECT_NEAR(1.0 - beside / static_cast<double>(kGrid * kGrid), 0.25 * kPi / (1.001 * 1.001), 0.005);
+  }
+}
+
 TEST_F(TransportTest, EveryPhotonSaysWhatBecameOfIt) {
   SceneData scene = test::makeBallScene(test::makeGlass(1.5F), 128);
   // A board that shades half of the ball.
