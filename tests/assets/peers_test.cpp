@@ -48,7 +48,7 @@ TEST_P(PeerScenes, AgreeInTheMeanAndLookTheSame) {
   const dvec3 ours = maskedMean(sum, mask), theirs = maskedMean(truth, mask);
   // The engine's own noise in the mean over tens of thousands of pixels is below a tenth of this tolerance.
   for (int c = 0; c < 3; ++c) EXPECT_NEAR(ours[c] / theirs[c], 1.0, 0.005) << "channel " << c;
-  EXPECT_LT(findMetric("l1").compute(sum, truth, mask), GetParam().l1);
+  EXPECT_LT(findMetric("l1").compute(sum, truth, mask, {}), GetParam().l1);
 }
 
 INSTANTIATE_TEST_SUITE_P(Peers, PeerScenes,
