@@ -203,10 +203,15 @@ vec3 visibilityOf(uint light_index, LightRecord light, Place place, Arriving arr
   return kSceneHasPassable ? exp2(vec3(shadow.octaves) / -kOctave) : vec3(1.0);
 }
 
-/// Is a surface turned towards light that arrives, and is there any?
-bool isReached(LightRecord light, Surface s, Arriving arriving) {
-  return light.view_count != 0u && dot(arriving.dir, s.shading) > 0.0 && dot(arriving.dir, s.geometric) > 0.0 &&
+/// Is a plane turned towards light that arrives, and is there any?
+bool mayReach(LightRecord light, vec3 normal, Arriving arriving) {
+  return light.view_count != 0u && dot(arriving.dir, normal) > 0.0 &&
          max(arriving.irradiance.x, max(arriving.irradiance.y, arriving.irradiance.z)) > 0.0;
+}
+
+/// The same of a surface, whose shaded normal counts too.
+bool isReached(LightRecord light, Surface s, Arriving arriving) {
+  return mayReach(light, s.geometric, arriving) && dot(arriving.dir, s.shading) > 0.0;
 }
 
 /// Where shadows are asked from.

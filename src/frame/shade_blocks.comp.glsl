@@ -80,15 +80,22 @@ struct Seen {
   bool front;
 };
 
+uvec2 offOf(uint k) { return uvec2(k % kBlock.x, k / kBlock.x); }
+
+/// Weights of the second and third corner where a pixel of the block meets the triangle.
+vec2 weightsOf(Sight sight, uint k) {
+  vec3 at = vec3(vec2(offOf(k)), 1.0);
+  return vec2(dot(sight.u, at), dot(sight.v, at)) / dot(sight.size, at);
+}
+
+vec3 placeOn(Triangle t, vec2 weights) { return t.a + weights.x * (t.b - t.a) + weights.y * (t.c - t.a); }
+
 Seen seenAt(Block block, TriangleSurface triangle, Sight sight, uint k) {
-  uvec2 off = uvec2(k % kBlock.x, k / kBlock.x);
-  vec3 at = vec3(vec2(off), 1.0);
-  float inverse = 1.0 / dot(sight.size, at), u = dot(sight.u, at) * inverse, v = dot(sight.v, at) * inverse;
-  Triangle corners = triangle.surface.corners;
+  vec2 weights = weightsOf(sight, k);
   Seen seen;
-  seen.pixel = block.first + off;
+  seen.pixel = block.first + offOf(k);
   seen.ray = rayThrough(views[0], filmOf(seen.pixel));
-  seen.surface = surfaceOn(triangle, corners.a + u * (corners.b - corners.a) + v * (corners.c - corners.a), u, v);
+  seen.surface = surfaceOn(triangle, placeOn(triangle.surface.corners, weights), weights.x, weights.y);
   if (kSceneHasTextures) seen.surface.shading = perturbedNormal(seen.surface);
   seen.front = turnTo(seen.surface, seen.ray.dir);
   return seen;
@@ -110,11 +117,15 @@ struct Shadows {
 Shadows findShadows(uint light_index, LightRecord light, Block block, TriangleSurface triangle, Sight sight) {
   BlockPoints points;
   uint reached = 0u;
+  // The eye is on one side of the triangle's plane.
+  vec3 normal = triangle.surface.geometric;
+  if (dot(rayThrough(views[0], filmOf(block.first)).dir, normal) >= 0.0) normal = -normal;
+  // No more than shadows need: what is done here is compiled once for each point.
   [[unroll]] for (uint k = 0u; k < kBlockPoints; ++k) {
-    Surface s = seenAt(block, triangle, sight, k).surface;
-    points.starts[k] = placeOf(s).start;
-    points.cells[k] = cellOnGrid(light, s.position);
-    if (points.cells[k] != kNowhere && isReached(light, s, arriveFrom(light, s.position))) reached |= 1u << k;
+    vec3 place = placeOn(triangle.surface.corners, weightsOf(sight, k));
+    points.starts[k] = place + triangle.surface.position_error * normal;
+    points.cells[k] = cellOnGrid(light, place);
+    if (points.cells[k] != kNowhere && mayReach(light, normal, arriveFrom(light, place))) reached |= 1u << k;
   }
   Shadows shadows = Shadows(findDoubtful(light_index, light, points, reached & pixelsOf(block)), 0u);
   if (kOfShadowedBlocks)

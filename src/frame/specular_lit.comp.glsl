@@ -128,14 +128,17 @@ vec2 placeInCell(Pixels pixels, uint k) { return vec2(offOf(pixels, k)) * pixels
 uint findShadowedEnds(uint light_index, LightRecord light, CellEnd e, LitTriangle lit, Pixels pixels) {
   BlockPoints points;
   uint reached = 0u;
-  [[unroll]] for (uint k = 0u; k < kBlockPoints; ++k) {
-    Surface s = seenAt(e, lit, placeInCell(pixels, k)).surface;
-    points.starts[k] = placeOf(s).start;
-    points.cells[k] = cellOnGrid(light, s.position);
-    bool wanted = !e.is_sky && k < pixels.count && points.cells[k] != kNowhere;
-    if (wanted && isReached(light, s, arriveFrom(light, s.position))) reached |= 1u << k;
-  }
   Surface s = lit.triangle.surface;
+  // No more than shadows need: what is done here is compiled once for each point.
+  [[unroll]] for (uint k = 0u; k < kBlockPoints; ++k) {
+    vec2 at = placeInCell(pixels, k);
+    vec3 place = placeAt(e, at), normal = s.geometric;
+    if (dot(valueAt(e.dir, at).xyz, normal) >= 0.0) normal = -normal;
+    points.starts[k] = place + s.position_error * normal;
+    points.cells[k] = cellOnGrid(light, place);
+    bool wanted = !e.is_sky && k < pixels.count && points.cells[k] != kNowhere;
+    if (wanted && mayReach(light, normal, arriveFrom(light, place))) reached |= 1u << k;
+  }
   return findShadowed(light_index, light, s.instance_index, s.triangle, points,
                       findDoubtful(light_index, light, points, reached));
 }
