@@ -243,13 +243,16 @@ void CausticMap::record(gpu::CommandRecorder& recorder, const RealtimeSample& sa
     }
     const DepositSurfaces surfaces{pictures->receivers->views(), pictures->receivers->surfaces(),
                                    settings_.receiver_layers};
-    if (!pictures->map_is_kept) {
+    const bool is_filled = !pictures->map_is_kept;
+    if (is_filled) {
       map.clear(recorder, point.most_flux);
       into(surfaces, views, 1.0F, map);
+    }
+    emit(recorder, sample.index, point, sinks);
+    if (is_filled) {
       smooth(recorder, surfaces, views, map);
       pictures->map_is_kept = keeps(point);
     }
-    emit(recorder, sample.index, point, sinks);
     lookUp(sample.surfaces.isForeign(), views).record(recorder, sample, sample.weight * point.weight, surfaces, map);
   }
   if (!into_pixels) return;
