@@ -82,7 +82,8 @@ void LightGrids::makeHeads() {
                       "heads of lights' grids");
   counters_ = gpu::Buffer(device_, layers * sizeof(std::uint32_t), VK_BUFFER_USAGE_STORAGE_BUFFER_BIT,
                           gpu::MemoryIntent::kDevice, "counters of lights' grids");
-  // Small triangles lie in one cell or two of one view; if there are more, the first build tells.
+  // Small triangles lie in one cell or two of one view, thin ones in some dozens; if there are more, the first build
+  // tells.
   std::uint32_t triangles = 0;
   for (const SceneBuffers::Draw& draw : buffers_.draws()) triangles += draw.index_count / 3;
   Light unbuilt;

@@ -61,15 +61,10 @@ Surface surfaceMet(uint instance_index, uint triangle, float u, float v) {
   return s;
 }
 
-/// Turns both normals to where the ray comes from.
+/// With its normal map, both normals to where the ray comes from.
 Surface turnTowards(Surface s, vec3 dir) {
   if (kSceneHasTextures) s.shading = perturbedNormal(s);
-  if (dot(dir, s.geometric) >= 0.0) {
-    s.geometric = -s.geometric;
-    s.shading = -s.shading;
-  }
-  // Near a silhouette the interpolated normal may look away from the path: the true one cannot.
-  if (dot(s.shading, -dir) <= 1e-4) s.shading = s.geometric;
+  turnTo(s, dir);
   return s;
 }
 

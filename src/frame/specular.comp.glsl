@@ -302,8 +302,9 @@ uint identifyFace(Surface s) {
   vec3 magnitude = abs(s.position);
   // Planes through the origin, but for rounding.
   if (abs(offset) <= 1e-5 * (magnitude.x + magnitude.y + magnitude.z)) offset = 0.0;
-  // Rounded so far that places on one plane mostly agree; where they do not, the cell is followed as any other.
-  const uint kept = 0xFFFFF800u;
+  // Rounded by 64 steps, so far that places on one plane mostly agree and those on the next stair never do; where they
+  // do not agree, the cell is followed as any other.
+  const uint kept = 0xFFFFFFC0u;
   return is_flat ? hashChain(packUnitVector(s.geometric), floatBitsToUint(offset) & kept) : s.triangle;
 }
 

@@ -94,6 +94,19 @@ Surface surfaceAt(uint instance_index, uint triangle, InstanceRecord instance, T
   return s;
 }
 
+/// Turns both normals to the side that a ray along `dir` comes from.
+/// @return  whether that is the outer side
+bool turnTo(inout Surface s, vec3 dir) {
+  bool front = dot(dir, s.geometric) < 0.0;
+  if (!front) {
+    s.geometric = -s.geometric;
+    s.shading = -s.shading;
+  }
+  // Near a silhouette the interpolated normal may look away from the eye: the true one cannot.
+  if (dot(s.shading, -dir) <= 1e-4) s.shading = s.geometric;
+  return front;
+}
+
 /// Where a ray of the camera meets the triangle that its pixel shows.
 Surface surfaceSeen(Ray ray, uint instance_index, uint triangle) {
   InstanceRecord instance = fetchInstance(instance_index);

@@ -49,17 +49,4 @@ MaterialPoint materialOn(TriangleSurface t, float u, float v) {
   return resolveMaterial(t.material, at);
 }
 
-/// Turns both normals to the side that a ray along `dir` comes from.
-/// @return  whether that is the outer side
-bool turnTo(inout Surface s, vec3 dir) {
-  bool front = dot(dir, s.geometric) < 0.0;
-  if (!front) {
-    s.geometric = -s.geometric;
-    s.shading = -s.shading;
-  }
-  // Near a silhouette the interpolated normal may look away from the eye: the true one cannot.
-  if (dot(s.shading, -dir) <= 1e-4) s.shading = s.geometric;
-  return front;
-}
-
 #endif

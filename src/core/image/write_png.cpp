@@ -155,7 +155,13 @@ std::vector<std::byte> encodePng(const Image& display, const std::map<std::strin
 
 void writePng(const std::filesystem::path& path, const Image& display,
               const std::map<std::string, std::string>& metadata) {
-  writeFileAtomically(path, encodePng(display, metadata));
+  std::vector<std::byte> bytes;
+  try {
+    bytes = encodePng(display, metadata);
+  } catch (const ResourceError& error) {
+    throw ResourceError(fmt::format("{}: {}", path.string(), error.what()));
+  }
+  writeFileAtomically(path, bytes);
 }
 
 }  // namespace nephroid
