@@ -1,5 +1,19 @@
 # Shaders are compiled when the library is built and embedded in it: nothing is looked for at run time.
 find_program(NEPHROID_GLSLANG_VALIDATOR glslangValidator REQUIRED)
+find_program(NEPHROID_SPIRV_OPT spirv-opt REQUIRED)
+
+# Functions inlined and variables turned into values, once for all who make pipelines of a shader: on a CPU device that
+# is most of the work of making one. What a driver does next depends on constants that are known to it alone.
+set(NEPHROID_SPIRV_PASSES
+    --inline-entry-points-exhaustive
+    --eliminate-dead-functions
+    --private-to-local
+    --eliminate-local-single-block
+    --eliminate-local-single-store
+    --eliminate-dead-code-aggressive
+    --scalar-replacement=100
+    --ssa-rewrite
+    --eliminate-dead-code-aggressive)
 
 # nephroid_embed_shaders(TARGET shaders…): NAME.STAGE.glsl becomes <shaders/FOLDER/NAME.STAGE.h>, FOLDER relative to
 # src/ (or to the project), with an array of words NAME_STAGE in namespace nephroid::shaders.
@@ -12,21 +26,29 @@ function(nephroid_embed_shaders target)
     string(REGEX REPLACE "\\.glsl$" "" name ${name})
     string(REPLACE "." "_" array ${name})
     string(REGEX REPLACE "^.*\\.([a-z]+)$" "\\1" stage ${name})
-    set(words ${PROJECT_BINARY_DIR}/generated/shaders/${folder}/${name}.words)
+    set(plain ${PROJECT_BINARY_DIR}/generated/shaders/${folder}/${name}.plain.spv)
+    set(module ${PROJECT_BINARY_DIR}/generated/shaders/${folder}/${name}.spv)
     set(header ${PROJECT_BINARY_DIR}/generated/shaders/${folder}/${name}.h)
     file(MAKE_DIRECTORY ${PROJECT_BINARY_DIR}/generated/shaders/${folder})
     add_custom_command(
-      OUTPUT ${words}
+      OUTPUT ${plain}
       COMMAND ${NEPHROID_GLSLANG_VALIDATOR} --quiet --target-env vulkan1.3 -S ${stage} -I${PROJECT_SOURCE_DIR}/src
-              --depfile ${words}.d --vn ${array} -o ${words} ${source}
+              --depfile ${plain}.d -o ${plain} ${source}
       DEPENDS ${source}
-      DEPFILE ${words}.d
+      DEPFILE ${plain}.d
       COMMENT "Compiling ${folder}/${shader}"
       VERBATIM)
     add_custom_command(
+      OUTPUT ${module}
+      COMMAND ${NEPHROID_SPIRV_OPT} --target-env=vulkan1.3 --scalar-block-layout ${NEPHROID_SPIRV_PASSES} ${plain} -o
+              ${module}
+      DEPENDS ${plain}
+      VERBATIM)
+    add_custom_command(
       OUTPUT ${header}
-      COMMAND ${CMAKE_COMMAND} -DWORDS=${words} -DHEADER=${header} -P ${PROJECT_SOURCE_DIR}/cmake/WrapShader.cmake
-      DEPENDS ${words} ${PROJECT_SOURCE_DIR}/cmake/WrapShader.cmake
+      COMMAND ${CMAKE_COMMAND} -DMODULE=${module} -DHEADER=${header} -DARRAY=${array} -P
+              ${PROJECT_SOURCE_DIR}/cmake/WrapShader.cmake
+      DEPENDS ${module} ${PROJECT_SOURCE_DIR}/cmake/WrapShader.cmake
       VERBATIM)
     list(APPEND headers ${header})
   endforeach()

@@ -1,5 +1,7 @@
-# Puts the array that glslang wrote into a namespace, as a constant of its own for every file that includes it.
-file(READ ${WORDS} text)
-string(REGEX REPLACE "#pragma once\n" "" text "${text}")
-string(REGEX REPLACE "const uint32_t " "inline constexpr std::uint32_t " text "${text}")
-file(WRITE ${HEADER} "#pragma once\n\n#include <cstdint>\n\nnamespace nephroid::shaders {\n${text}\n}  // namespace nephroid::shaders\n")
+# Writes the words of a SPIR-V module as an array, a constant of its own for every file that includes it.
+file(READ ${MODULE} bytes HEX)
+string(REGEX REPLACE "(..)(..)(..)(..)" "0x\\4\\3\\2\\1,\n" words "${bytes}")
+file(
+  WRITE ${HEADER}
+  "#pragma once\n\n#include <cstdint>\n\nnamespace nephroid::shaders {\ninline constexpr std::uint32_t ${ARRAY}[] = {\n${words}};\n}  // namespace nephroid::shaders\n"
+)
