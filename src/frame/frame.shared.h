@@ -189,10 +189,21 @@ NEPHROID_CONST uint kNodePassable = 0x80000000u;
 /// A box of the tree of triangles: see frame/triangle_tree.h.
 struct TreeNode {
   vec3 lower;  // world
-  uint skip;   // the node where a walk goes on that misses the box; their number at the end
+  uint link;   // of a leaf: kTreeLeaf + first triangle · 4 + how many; else the node where a walk goes on that misses
+              // the box, their number at the end
   vec3 upper;
-  uint leaf;  // first triangle · 4 + how many; kNowhere: the next node is the first inside
+  uint pad;
 };
+
+/// A box on the grid of the tree, 16 bits a coordinate, rounded outwards.
+struct CompactTreeNode {
+  uint lower_xy;  // x low
+  uint lower_z_upper_x;
+  uint upper_yz;
+  uint link;  // as above
+};
+
+NEPHROID_CONST uint kTreeLeaf = 0x80000000u;
 
 /// A triangle of the tree, world.
 struct TreeTriangle {

@@ -59,7 +59,9 @@ std::vector<gpu::Constant> join(std::vector<gpu::Constant> constants, const std:
 /// Pushed by frame/specular_push.glsl.
 struct SpecularPass::Push {
   SamplePush sample;
-  std::uint32_t max_events, tree_nodes, tree_orders, band_count;
+  std::uint32_t max_events;
+  TriangleTree::Walk tree;
+  std::uint32_t band_count;
   uvec2 shift;
   std::uint32_t chain;
 };
@@ -92,7 +94,8 @@ SpecularPass::SpecularPass(gpu::Device& device, gpu::CommandRecorder& recorder, 
     return make(shaders::specular_comp,
                 {kTexture, kTexture, kTexture, kTable, kTable, kStorage, kTexture, kTexture, kTexture, kStorage,
                  kTexture, kTexture, kTexture, kTable},
-                join(join(traits.pathConstants(), of_ends), {{kTaskConstant, task}}), name, true);
+                join(join(join(traits.pathConstants(), of_ends), inputs.tree.constants()), {{kTaskConstant, task}}),
+                name, true);
   };
   pixels_ = make(shaders::specular_pixels_comp, {kTexture, kTable, kTexture}, traits.constants(), "specular pixels");
   follow_all_ = follow(kShowAll, "specular");
@@ -161,8 +164,7 @@ SpecularPass::Push SpecularPass::pushOf(const SamplePush& sample) const {
   const std::uint32_t side = following_.spacing, place = sample.frame % (side * side);
   return {.sample = sample,
           .max_events = following_.max_events,
-          .tree_nodes = inputs_.tree.nodeCount(),
-          .tree_orders = inputs_.tree.orderCount(),
+          .tree = inputs_.tree.walk(),
           .band_count = static_cast<std::uint32_t>(kBandCount),
           .shift = uvec2(place % side, place / side),
           .chain = 0};

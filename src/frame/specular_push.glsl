@@ -4,8 +4,10 @@
 layout(push_constant, scalar) uniform Push {
   SamplePush push;
   uint max_events;
-  uint tree_nodes;  // of the tree of triangles, in one order
+  uint tree_nodes;  // TriangleTree::Walk
   uint tree_orders;
+  vec3 tree_grid_lower;
+  float tree_grid_scale;
   uint band_count;
   uvec2 shift;  // of the grid of cells against the picture, in pixels
   uint chain;   // that a pass over cells is about: kReflected, kTransmitted

@@ -1,5 +1,6 @@
 #include "frame/triangle_tree.h"
 
+#include <algorithm>
 #include <span>
 
 #include "core/math.h"
@@ -10,12 +11,20 @@
 namespace nephroid {
 namespace {
 
+/// Of frame/triangle_tree.glsl.
+constexpr std::uint32_t kCompactConstant = 20;
 /// What a shader's turn of triangle_tree.glsl takes for each.
 constexpr BoxTreeCosts kCosts{.max_leaf_size = 3, .box = 1.0F, .primitive = 1.0F};
 /// More triangles than this have one order only, for the sake of memory.
 constexpr std::size_t kMaxOrdered = 400'000;
 /// Widening of boxes, relative to the coordinates: the rounding of a shader's test.
 constexpr float kBoxMargin = 1.0F / 1048576.0F;
+/// Cells of the grid along the scene's longest side; what is left of 2^16 takes the margins.
+constexpr float kGridCells = 65'000.0F;
+/// On the grid, a shader's rounding is less than this many cells.
+constexpr float kGridMargin = 0.25F;
+/// Areas of boxes on the grid may be so many times those of the true ones, in the mean over all: as many more are met.
+constexpr double kMaxGrowth = 1.25;
 
 /// All triangles of the scene, and the boxes of each.
 struct Triangles {
@@ -52,14 +61,66 @@ bool meetsSecondFirst(const Bounds& first, const Bounds& second, std::uint32_t o
   return backwards != (apart[axis] < 0.0F);
 }
 
+vec3 marginOf(const Bounds& box) { return kBoxMargin * glm::max(glm::abs(box.lower), glm::abs(box.upper)); }
+
+/// The grid of compact nodes.
+struct Grid {
+  vec3 lower{0};
+  float scale = 1.0F;
+
+  explicit Grid(const Bounds& scene) {
+    const vec3 extent = scene.extent();
+    const float longest = std::max({extent.x, extent.y, extent.z});
+    if (longest > 0.0F) scale = kGridCells / longest;
+    lower = scene.lower - 0.5F * (65'535.0F - kGridCells) / scale;
+  }
+
+  /// In cells, rounded outwards.
+  Bounds place(const Bounds& box) const {
+    const vec3 margin = marginOf(box);
+    Bounds placed;
+    placed.lower = glm::max(glm::floor((box.lower - margin - lower) * scale - kGridMargin), vec3(0.0F));
+    placed.upper = glm::min(glm::ceil((box.upper + margin - lower) * scale + kGridMargin), vec3(65'535.0F));
+    return placed;
+  }
+};
+
+/// Half the area of a box.
+double halfAreaOf(vec3 extent) {
+  const glm::dvec3 e(extent);
+  return e.x * e.y + e.y * e.z + e.z * e.x;
+}
+
+/// How many times its true area a box has on the grid, in the mean: a ray meets it in proportion. Not of all areas
+/// together, which those of a wide floor outweigh, while rays go from thing to thing.
+double growthOn(const Grid& grid, const BoxTree& tree) {
+  double sum = 0.0;
+  // A cell's face more is no growth to speak of, and some boxes are lines.
+  for (const BoxTree::Node& node : tree.nodes)
+    sum += halfAreaOf(grid.place(node.box).extent()) / (halfAreaOf(node.box.extent() * grid.scale) + 1.0);
+  return tree.nodes.empty() ? 1.0 : sum / static_cast<double>(tree.nodes.size());
+}
+
+TreeNode makeNode(const Bounds& box, std::uint32_t link) {
+  const vec3 margin = marginOf(box);
+  return {box.lower - margin, link, box.upper + margin, 0};
+}
+
+CompactTreeNode makeCompactNode(const Grid& grid, const Bounds& box, std::uint32_t link) {
+  const Bounds placed = grid.place(box);
+  const uvec3 lower(placed.lower), upper(placed.upper);
+  return {lower.x | lower.y << 16U, lower.z | upper.x << 16U, upper.y | upper.z << 16U, link};
+}
+
 /// Writes the nodes in the order that rays of one octant of directions walk them.
 /// @param nodes  as many as the tree has
-void writeOrder(const BoxTree& tree, std::uint32_t octant, std::span<TreeNode> nodes) {
-  std::size_t next = 0;
+/// @param make   (box, link) -> node
+template <class Node, class Make>
+void writeOrder(const BoxTree& tree, std::uint32_t octant, std::span<Node> nodes, const Make& make) {
+  std::uint32_t next = 0;
   // Below it is written: what follows is where a walk that misses the node goes on.
   struct Task {
-    std::uint32_t node;
-    std::size_t written;
+    std::uint32_t node, written;
     bool done;
   };
   std::vector<Task> tasks;
@@ -68,20 +129,30 @@ void writeOrder(const BoxTree& tree, std::uint32_t octant, std::span<TreeNode> n
     const Task task = tasks.back();
     tasks.pop_back();
     if (task.done) {
-      nodes[task.written].skip = static_cast<std::uint32_t>(next);
+      nodes[task.written].link = next;
       continue;
     }
     const BoxTree::Node& node = tree.nodes[task.node];
-    const vec3 margin = kBoxMargin * glm::max(glm::abs(node.box.lower), glm::abs(node.box.upper));
-    const std::uint32_t leaf = node.isLeaf() ? node.first << 2U | node.count : kNowhere;
-    nodes[next] = {node.box.lower - margin, 0, node.box.upper + margin, leaf};
-    tasks.push_back({task.node, next++, true});
+    nodes[next] = make(node.box, node.isLeaf() ? kTreeLeaf | node.first << 2U | node.count : 0U);
+    ++next;
     if (node.isLeaf()) continue;
+    tasks.push_back({task.node, next - 1, true});
     const std::uint32_t first = task.node + 1, second = node.first;
     const bool turned = meetsSecondFirst(tree.nodes[first].box, tree.nodes[second].box, octant);
     tasks.push_back({turned ? first : second, 0, false});
     tasks.push_back({turned ? second : first, 0, false});
   }
+}
+
+/// @param make  as above; @return  order by order
+template <class Node, class Make>
+std::vector<Node> writeOrders(const BoxTree& tree, std::uint32_t orders, const Make& make) {
+  const std::size_t count = tree.nodes.size();
+  std::vector<Node> nodes(count * orders);
+  parallelFor(orders, [&](std::size_t octant) {
+    writeOrder(tree, static_cast<std::uint32_t>(octant), std::span(nodes).subspan(octant * count, count), make);
+  });
+  return nodes;
 }
 
 }  // namespace
@@ -92,23 +163,34 @@ TreeTables makeTreeTables(const SceneData& scene, const BoxTreeBuilder& builder)
   TreeTables tables;
   tables.triangles.resize(tree.primitives.size());
   parallelFor(tree.primitives.size(), [&](std::size_t i) { tables.triangles[i] = triangles.all[tree.primitives[i]]; });
-  const std::size_t count = tree.nodes.size();
-  tables.node_count = static_cast<std::uint32_t>(count);
+  tables.node_count = static_cast<std::uint32_t>(tree.nodes.size());
   tables.order_count = triangles.all.size() <= kMaxOrdered ? 8 : 1;
-  tables.nodes.resize(count * tables.order_count);
-  parallelFor(tables.order_count, [&](std::size_t octant) {
-    writeOrder(tree, static_cast<std::uint32_t>(octant), std::span(tables.nodes).subspan(octant * count, count));
-  });
+  const Grid grid(tree.nodes.empty() ? Bounds{vec3(0.0F), vec3(0.0F)} : tree.nodes.front().box);
+  tables.compact = growthOn(grid, tree) <= kMaxGrowth;
+  if (tables.compact) {
+    tables.grid_lower = grid.lower;
+    tables.grid_scale = grid.scale;
+    const auto make = [&](const Bounds& box, std::uint32_t link) { return makeCompactNode(grid, box, link); };
+    tables.compact_nodes = writeOrders<CompactTreeNode>(tree, tables.order_count, make);
+  } else {
+    tables.nodes = writeOrders<TreeNode>(tree, tables.order_count, makeNode);
+  }
   return tables;
 }
 
 TriangleTree::TriangleTree(gpu::Device& device, gpu::CommandRecorder& recorder, const SceneData& scene,
                            const BoxTreeBuilder& builder) {
   const TreeTables tables = makeTreeTables(scene, builder);
-  node_count_ = tables.node_count;
-  order_count_ = tables.order_count;
-  nodes_ = makeTable<TreeNode>(device, recorder, tables.nodes, "tree of triangles");
+  compact_ = tables.compact;
+  walk_ = {.nodes = tables.node_count,
+           .orders = tables.order_count,
+           .grid_lower = tables.grid_lower,
+           .grid_scale = tables.grid_scale};
+  nodes_ = compact_ ? makeTable<CompactTreeNode>(device, recorder, tables.compact_nodes, "tree of triangles")
+                    : makeTable<TreeNode>(device, recorder, tables.nodes, "tree of triangles");
   triangles_ = makeTable<TreeTriangle>(device, recorder, tables.triangles, "triangles of the tree");
 }
+
+std::vector<gpu::Constant> TriangleTree::constants() const { return {{kCompactConstant, compact_}}; }
 
 }  // namespace nephroid

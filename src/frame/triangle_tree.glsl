@@ -1,7 +1,7 @@
 // What a ray of any origin and direction meets first, by a tree of boxes (frame/triangle_tree.h).
 //
 // The including shader gives the two bindings from NEPHROID_TREE_BINDINGS on, and declares before, among what is pushed
-// to it: tree_nodes, tree_orders.
+// to it: tree_nodes, tree_orders, tree_grid_lower, tree_grid_scale.
 #ifndef NEPHROID_TRIANGLE_TREE_GLSL
 #define NEPHROID_TRIANGLE_TREE_GLSL
 
@@ -11,8 +11,27 @@
 layout(set = 0, binding = NEPHROID_TREE_BINDINGS) uniform usampler2D tree_node_table;
 layout(set = 0, binding = NEPHROID_TREE_BINDINGS + 1) uniform usampler2D tree_triangle_table;
 
+layout(constant_id = 20) const bool kTreeIsCompact = false;
+
 /// Weights of corners below zero by as much are on the triangle: else a ray may slip between two of them.
 const float kEdgeSlack = 1e-6;
+
+/// A box of the tree, on its grid: in the world where that is none.
+struct TreeBox {
+  vec3 lower;
+  vec3 upper;
+  uint link;
+};
+
+TreeBox fetchBox(uint node) {
+  if (kTreeIsCompact) {
+    uvec4 n = texelFetch(tree_node_table, texelOf(node), 0);
+    return TreeBox(vec3(n.x & 0xFFFFu, n.x >> 16, n.y & 0xFFFFu), vec3(n.y >> 16, n.z & 0xFFFFu, n.z >> 16), n.w);
+  }
+  uvec4 lower = texelFetch(tree_node_table, texelOf(2u * node), 0);
+  uvec4 upper = texelFetch(tree_node_table, texelOf(2u * node + 1u), 0);
+  return TreeBox(uintBitsToFloat(lower.xyz), uintBitsToFloat(upper.xyz), lower.w);
+}
 
 /// Does a ray meet a box before `t_max`?
 bool meetsBox(vec3 lower, vec3 upper, vec3 origin, vec3 inverse_dir, float t_max) {
@@ -31,6 +50,8 @@ Met meetFirst(Ray ray, uint own_instance, uint own_triangle) {
   vec3 inverse_dir = 1.0 / dir;
   uvec3 below = uvec3(lessThan(dir, vec3(0.0)));
   uint first = tree_orders == 8u ? (below.x + 2u * below.y + 4u * below.z) * tree_nodes : 0u;
+  // The grid is the same along all axes, so directions are too, and distances are its cells.
+  vec3 origin = (ray.origin - tree_grid_lower) * tree_grid_scale;
   uint node = 0u, triangle = 0u, triangles_left = 0u;
   if (tree_nodes == 0u) return best;
   // All loops ask at the end whether there is more: a device that runs all branches runs a loop's body once more to find
@@ -39,13 +60,12 @@ Met meetFirst(Ray ray, uint own_instance, uint own_triangle) {
     // To the next leaf. Threads that go in step wait for each other here: a turn for either a box or a triangle would
     // cost both.
     do {
-      uvec4 lower = texelFetch(tree_node_table, texelOf(2u * (first + node)), 0);
-      uvec4 upper = texelFetch(tree_node_table, texelOf(2u * (first + node) + 1u), 0);
-      bool met = meetsBox(uintBitsToFloat(lower.xyz), uintBitsToFloat(upper.xyz), ray.origin, inverse_dir, best.t);
-      bool is_leaf = upper.w != kNowhere;
-      node = met ? node + 1u : lower.w;
-      triangle = is_leaf ? upper.w >> 2 : 0u;
-      triangles_left = met && is_leaf ? upper.w & 3u : 0u;
+      TreeBox box = fetchBox(first + node);
+      bool met = meetsBox(box.lower, box.upper, origin, inverse_dir, best.t * tree_grid_scale);
+      bool is_leaf = box.link >= kTreeLeaf;
+      node = met || is_leaf ? node + 1u : box.link;
+      triangle = is_leaf ? (box.link - kTreeLeaf) >> 2 : 0u;
+      triangles_left = met && is_leaf ? box.link & 3u : 0u;
     } while (node < tree_nodes && triangles_left == 0u);
     bool is_triangle = triangles_left > 0u;
     do {

@@ -3,6 +3,10 @@
 // A shader walks it without a stack: nodes lie in the order of a depth-first walk, and each knows where the walk goes
 // on if its box is missed. Such an order suits rays of one octant of directions, in which it meets near boxes first;
 // small scenes have one for each of the eight. The boxes themselves come from a builder that the frame is given.
+//
+// Most of a walk's time goes into fetching nodes, so boxes lie on a grid of 16 bits over the scene and take a texel
+// each, unless that would make them much larger: things that are small in a wide scene keep boxes of floats, two texels
+// each.
 #pragma once
 
 #include <cstdint>
@@ -11,16 +15,22 @@
 #include "core/box_tree.h"
 #include "frame/frame.shared.h"
 #include "gpu/commands.h"
+#include "gpu/pipeline.h"
 #include "scene/scene_data.h"
 
 namespace nephroid {
 
 static_assert(sizeof(TreeNode) == 32);
+static_assert(sizeof(CompactTreeNode) == 16);
 static_assert(sizeof(TreeTriangle) == 48);
 
 /// The tree as the tables hold it.
 struct TreeTables {
-  std::vector<TreeNode> nodes;  ///< order by order
+  bool compact = false;  ///< which of the next two there are, order by order
+  std::vector<CompactTreeNode> compact_nodes;
+  std::vector<TreeNode> nodes;
+  vec3 grid_lower{0};       ///< m, world; where the grid of compact nodes begins
+  float grid_scale = 1.0F;  ///< its cells a metre
   std::vector<TreeTriangle> triangles;
   std::uint32_t node_count = 0;   ///< of one order
   std::uint32_t order_count = 1;  ///< 8: by the signs of the direction, bit k set where coordinate k is below 0
@@ -35,13 +45,21 @@ class TriangleTree {
   TriangleTree(gpu::Device& device, gpu::CommandRecorder& recorder, const SceneData& scene,
                const BoxTreeBuilder& builder);
 
-  std::uint32_t nodeCount() const { return node_count_; }
-  std::uint32_t orderCount() const { return order_count_; }
+  /// What a shader is pushed.
+  struct Walk {
+    std::uint32_t nodes, orders;
+    vec3 grid_lower;
+    float grid_scale;
+  };
+  const Walk& walk() const { return walk_; }
+  /// Of frame/triangle_tree.glsl.
+  std::vector<gpu::Constant> constants() const;
   const gpu::Image& nodes() const { return nodes_; }
   const gpu::Image& triangles() const { return triangles_; }
 
  private:
-  std::uint32_t node_count_ = 0, order_count_ = 1;
+  bool compact_ = false;
+  Walk walk_;
   gpu::Image nodes_, triangles_;
 };
 
