@@ -2,13 +2,13 @@
 //
 // From each listed pixel two chains are followed, one that the first surface reflects and one that it lets through. A
 // chain ends on the first surface that it sees lit (class D), or where it leaves the scene. What becomes of it at every
-// further surface is one of three tasks, each a pipeline of its own:
+// further surface is one of two tasks, each a pipeline of its own:
 //
-// - kShowAll: one way on is drawn in proportion to what it carries, so that the mean over frames is the sum of all.
+// - kShow: one way on is drawn in proportion to what it carries, so that the mean over frames is the sum of all. In
+//   pixels where that is shown otherwise it first goes the way that carries most, up to a surface at which it is drawn to
+//   take another.
 // - kFollowMost: at points of the grid, the way that carries most; where that ends is noted (specular_ends.glsl), and
-//   specular_lit.comp.glsl shows it in those pixels of a cell that kShowAll would have drawn it in.
-// - kShowOthers: in the other pixels of a cell: it goes the same way, up to a surface at which it is drawn to take
-//   another, and on from there as kShowAll.
+//   specular_lit.comp.glsl shows it in those pixels of a cell that kShow would have drawn it in.
 //
 // One loop follows both chains, one after the other: of threads that go in step, none waits for the others between them.
 #version 460
@@ -37,27 +37,26 @@ layout(set = 0, binding = 12, rgba32ui) writeonly uniform uimage2D end_image;
 layout(set = 0, binding = 13) uniform sampler2D band_table;  // wavelength in nm, and weight times their count
 layout(set = 0, binding = 16, rgba32f) uniform image2D specular_image;  // sum over samples, W/m²/sr
 
-const uint kShowAll = 0u;
+const uint kShow = 0u;
 const uint kFollowMost = 1u;
-const uint kShowOthers = 2u;
-layout(constant_id = 17) const uint kTask = kShowAll;
+layout(constant_id = 17) const uint kTask = kShow;
 
 /// What a pixel's chains have come to.
 struct Chains {
   Path path;      // that is followed
   Path other;     // to follow when that has ended: the other way on from the first surface
   vec3 radiance;  // of both so far, W/m²/sr
-  uint skipped;   // kNo…: not to be followed
-  // Not of kShowAll:
+  uint flags;     // with which the pixel is listed
   uint way;       // of the first surface that `path` took: kReflected, kTransmitted
+  bool draws;     // kShow: its ways; else it goes the one that carries most
+  float to_pass;  // kShow: takeOther's
+  // kFollowMost:
   uint met;       // hash of the surfaces met by `path`, and the ways taken
   uint met_first;  // of the first of them
   bool unsure;     // pixels nearby may show something else than the hash tells
   bool unsure_first;
   bool escaped;   // `path` has left the scene
-  float others;    // chance with which `path` would have been drawn to take another way somewhere
-  bool deviates;   // kShowOthers: it has
-  float to_pass;   // kShowOthers: takeOther's
+  float others;   // chance with which `path` would have been drawn to take another way somewhere
 };
 
 /// What a chain was drawn to see lit.
@@ -137,9 +136,9 @@ Choice drawWay(Ways ways, float u) {
   return Choice(sees_it, through, sees_it ? ways.lit : through ? ways.transmitted : ways.reflected);
 }
 
-/// What kFollowMost and kShowOthers do.
+/// The way that carries most, or, as drawn once for all surfaces, another.
 Choice chooseWay(inout Chains chains, Ways ways, float u) {
-  if (kTask == kShowOthers && chains.deviates) return drawWay(ways, u);
+  if (chains.draws) return drawWay(ways, u);
   vec3 chances = vec3(ways.reflected, ways.transmitted, ways.lit);
   float sum = chances.x + chances.y + chances.z;
   chances *= sum > 0.0 ? 1.0 / sum : 0.0;
@@ -147,10 +146,10 @@ Choice chooseWay(inout Chains chains, Ways ways, float u) {
   float chance = chances[taken];
   vec3 others = chances * vec3(notEqual(uvec3(taken), uvec3(0u, 1u, 2u)));
   chains.others += (1.0 - chains.others) * (others.x + others.y + others.z);
-  if (kTask == kShowOthers) {
+  if (kTask == kShow) {
     uint drawn = takeOther(others, chains.to_pass);
     if (drawn < 3u) {
-      chains.deviates = true;
+      chains.draws = true;
       taken = drawn;
       chance = others[drawn];
     }
@@ -167,14 +166,14 @@ void branchOrChoose(inout Chains chains, Way reflected, Way transmitted, Choice 
     chains.other = chains.path;
     chains.other.seed = hashChain(chains.path.seed, 2u);
     take(chains.other, transmitted, s, crossing, is_smooth_pane);
-    if ((chains.skipped & kNoTransmitted) != 0u) chains.other.ended = true;
+    if ((chains.flags & kNoTransmitted) != 0u) chains.other.ended = true;
   }
   Way way = reflected;
   if (!first && choice.through) way = transmitted;
   float chance = first ? 1.0 : choice.chance;
   way.weight *= chance > 0.0 ? 1.0 / chance : 0.0;
   take(chains.path, way, s, crossing, is_smooth_pane);
-  if (first && (chains.skipped & kNoReflected) != 0u) chains.path.ended = true;
+  if (first && (chains.flags & kNoReflected) != 0u) chains.path.ended = true;
 }
 
 /// A surface tells its neighbours apart from others: flat ones face by face, because light makes a jump between them.
@@ -184,7 +183,7 @@ uint identify(Surface s, uint taken) {
 }
 
 /// Is what the chains meet seen, or known already?
-bool isShown(Chains chains) { return kTask == kShowAll || (kTask == kShowOthers && chains.deviates); }
+bool isShown(Chains chains) { return kTask == kShow && chains.draws; }
 
 /// Of kFollowMost.
 void noteSurface(inout Chains chains, uint surface, bool is_first, bool unsure) {
@@ -233,7 +232,7 @@ Receiver meet(inout Chains chains, Met met, uvec2 pixel) {
     Ways ways = weigh(path, scattered, m, s, wo, is_specular);
     float u_way = draw(path);
     Choice choice;
-    if (kTask == kShowAll || !path.branched) {
+    if (!path.branched) {
       choice = drawWay(ways, u_way);
     } else {
       choice = chooseWay(chains, ways, u_way);
@@ -255,13 +254,14 @@ Receiver meet(inout Chains chains, Met met, uvec2 pixel) {
   return receiver;
 }
 
-Chains startChains(Ray ray, uvec2 pixel, uint skipped) {
+Chains startChains(Ray ray, uvec2 pixel, uint flags) {
   uint seed = hashChain(hashChain(0u, pixel.x + (pixel.y << 16)), push.frame);
   Path path = Path(ray, vec3(1.0), false, false, 0u, seed, 0.0, kNowhere, 0u, kInTheOpen);
   Path none = path;
   none.ended = true;
-  float to_pass = kTask == kShowOthers ? drawOther(pixel, push.frame, kReflected) : 0.0;
-  return Chains(path, none, vec3(0.0), skipped, kReflected, 0u, 0u, false, false, false, 0.0, false, to_pass);
+  bool draws = kTask == kShow && (flags & kReflectedPassesBy) == 0u;
+  float to_pass = kTask == kShow ? drawOther(pixel, push.frame, kReflected) : 0.0;
+  return Chains(path, none, vec3(0.0), flags, kReflected, draws, to_pass, 0u, 0u, false, false, false, 0.0);
 }
 
 /// Light that a chain's last surface sends along it.
@@ -319,7 +319,7 @@ void noteEnd(Chains chains, Receiver receiver, uvec2 point) {
     place = s.position;
     face = identifyFace(s);
   }
-  uint chain = hashChain(hashChain(chains.met, lit ? receiver.instance : kNowhere), face) | 1u;
+  uint chain = hashChain(hashChain(hashChain(chains.met, lit ? receiver.instance : kNowhere), face), stamp) | 1u;
   if (chains.unsure) chain = 0u;
   uint instance = lit ? receiver.instance : kNowhere;
   imageStore(end_image, texelOfEnd(point, chains.way, 0u), uvec4(floatBitsToUint(place), chain));
@@ -336,14 +336,14 @@ void followOther(inout Chains chains, uvec2 pixel) {
   chains.unsure = chains.unsure_first;
   chains.escaped = false;
   chains.others = 0.0;
-  chains.deviates = false;
-  if (kTask == kShowOthers) chains.to_pass = drawOther(pixel, push.frame, kTransmitted);
+  chains.draws = kTask == kShow && (chains.flags & kTransmittedPassesBy) == 0u;
+  if (kTask == kShow) chains.to_pass = drawOther(pixel, push.frame, kTransmitted);
 }
 
 /// Radiance of both chains of a pixel, W/m²/sr.
 /// @param point  kFollowMost: of the grid
-vec3 followChains(Ray ray, uvec2 pixel, uint skipped, uvec2 point) {
-  Chains chains = startChains(ray, pixel, skipped);
+vec3 followChains(Ray ray, uvec2 pixel, uint flags, uvec2 point) {
+  Chains chains = startChains(ray, pixel, flags);
   Receiver first = kNoReceiver, second = kNoReceiver;
   // Panes and holes are no events; the limit on steps keeps two facing panes from holding a path for ever.
   uint step = 0u;
@@ -381,13 +381,13 @@ void followListed(uint packed_place) {
     uvec2 pixel = pixelOfPoint(place);
     followChains(rayOf(pixel), pixel, 0u, place);
   } else {
-    vec3 radiance = followChains(rayOf(place), place, packed_place & (kNoReflected | kNoTransmitted), place);
+    vec3 radiance = followChains(rayOf(place), place, packed_place, place);
     imageStore(specular_image, ivec2(place), imageLoad(specular_image, ivec2(place)) + vec4(radiance, 0.0));
   }
 }
 
 void main() {
-  uint list = kTask == kShowAll ? kFollowedPixels : kTask == kFollowMost ? kPoints : kDeviatingPixels;
+  uint list = kTask == kShow ? kFollowedPixels : kPoints;
   uint first = firstOf(list), count = heads[list].count, i = firstListed();
   if (i >= count) return;
   // Whether there is more is asked at the end, here and below: a device that runs all branches runs a loop's body once

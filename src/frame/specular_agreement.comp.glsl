@@ -157,33 +157,35 @@ Agreement agreementOf(uvec2 cell, Cell pixels, uint chain) {
   return a;
 }
 
-void listPixels(Cell pixels, uint list, uint flags) {
-  uvec2 size = pixels.end - pixels.first;
-  uint next = extend(list, size.x * size.y);
-  uvec2 pixel = pixels.first;
-  do {
-    listed[next++] = packPlace(pixel) | flags;
-  } while (nextPixel(pixels, pixel));
-}
-
 /// Is a pixel drawn to show what a chain passed by?
 bool deviates(Agreement a, uvec2 pixel, vec2 at, uint chain) {
-  return a.agrees && drawOther(pixel, push.frame, chain) < kOthersMargin * valueAt(a.weight, at).w;
+  return drawOther(pixel, push.frame, chain) < kOthersMargin * valueAt(a.weight, at).w;
 }
 
-void listDeviating(Cell pixels, Agreement reflected, Agreement transmitted) {
+/// What of a pixel is to be followed, as flags of the list.
+uint findFlags(Agreement reflected, Agreement transmitted, uvec2 pixel, vec2 at) {
+  uint flags = kSceneTransmits ? 0u : kNoTransmitted;
+  if (reflected.agrees) flags |= deviates(reflected, pixel, at, kReflected) ? kReflectedPassesBy : kNoReflected;
+  if (kSceneTransmits && transmitted.agrees)
+    flags |= deviates(transmitted, pixel, at, kTransmitted) ? kTransmittedPassesBy : kNoTransmitted;
+  return flags;
+}
+
+const uint kNothing = kNoReflected | kNoTransmitted;
+
+void listPixels(Cell pixels, Agreement reflected, Agreement transmitted) {
   vec2 inverse_size = 1.0 / vec2(pixels.last - pixels.first);
-  uvec2 pixel = pixels.first, next = pixel;
+  uvec2 size = pixels.end - pixels.first, pixel = pixels.first, following = pixel;
+  // Where all are followed they come one behind the other: threads that go in step find the same things there.
+  bool all_are = !reflected.agrees || (kSceneTransmits && !transmitted.agrees);
+  uint next = all_are ? extend(kFollowedPixels, size.x * size.y) : 0u;
   bool more;
   do {
-    vec2 at = vec2(pixel - pixels.first) * inverse_size;
-    bool by_reflected = deviates(reflected, pixel, at, kReflected);
-    bool by_transmitted = kSceneTransmits && deviates(transmitted, pixel, at, kTransmitted);
-    more = nextPixel(pixels, next);
-    if (by_reflected || by_transmitted)
-      listed[extend(kDeviatingPixels, 1u)] =
-          packPlace(pixel) | (by_reflected ? 0u : kNoReflected) | (by_transmitted ? 0u : kNoTransmitted);
-    pixel = next;
+    uint flags = findFlags(reflected, transmitted, pixel, vec2(pixel - pixels.first) * inverse_size);
+    more = nextPixel(pixels, following);
+    if (!all_are && (flags & kNothing) != kNothing) next = extend(kFollowedPixels, 1u);
+    if ((flags & kNothing) != kNothing) listed[next++] = packPlace(pixel) | flags;
+    pixel = following;
   } while (more);
 }
 
@@ -206,10 +208,7 @@ void sortCell(uint packed_place) {
   if (kSceneTransmits) transmitted = agreementOf(cell, pixels, kTransmitted);
   listLit(reflected, packed_place, kReflected);
   if (kSceneTransmits) listLit(transmitted, packed_place, kTransmitted);
-  if (!reflected.agrees || !transmitted.agrees)
-    listPixels(pixels, kFollowedPixels,
-               (reflected.agrees ? kNoReflected : 0u) | (transmitted.agrees ? kNoTransmitted : 0u));
-  listDeviating(pixels, reflected, transmitted);
+  listPixels(pixels, reflected, transmitted);
 }
 
 void main() {

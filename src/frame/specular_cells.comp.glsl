@@ -8,10 +8,8 @@
 #include "frame/specular_push.glsl"
 #define NEPHROID_GRID_BINDINGS 7
 #include "frame/specular_grid.glsl"
-#include "frame/specular_ends.glsl"
 
 layout(local_size_x = 8, local_size_y = 8) in;
-layout(set = 0, binding = 9, rgba32ui) writeonly uniform uimage2D end_image;
 
 /// Do all pixels of a cell and its corners show one instance?
 bool showsOne(Cell cell, uint first) {
@@ -25,8 +23,6 @@ bool showsOne(Cell cell, uint first) {
 void main() {
   uvec2 point = gl_GlobalInvocationID.xy, points = pointCount();
   if (any(greaterThanEqual(point, points))) return;
-  imageStore(end_image, texelOfEnd(point, kReflected, 0u), uvec4(0u));
-  imageStore(end_image, texelOfEnd(point, kTransmitted, 0u), uvec4(0u));
   Cell cell = cellAt(point);
   // A point's own pixel is the first of its cell, also of one without pixels.
   uint first = texelFetch(seen_image, ivec2(cell.first), 0).x;

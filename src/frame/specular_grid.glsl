@@ -17,7 +17,7 @@ struct ListHead {
 };
 
 layout(set = 0, binding = NEPHROID_GRID_BINDINGS) uniform usampler2D seen_image;
-layout(scalar, set = 0, binding = NEPHROID_GRID_BINDINGS + 1) buffer Lists { ListHead heads[7]; uint listed[]; };
+layout(scalar, set = 0, binding = NEPHROID_GRID_BINDINGS + 1) buffer Lists { ListHead heads[6]; uint listed[]; };
 
 /// Pixels between two points; 1: every pixel is followed, and there are no cells.
 layout(constant_id = 18) const uint kSpacing = 4u;
@@ -28,15 +28,17 @@ const uint kTransmitted = 1u;
 
 // Lists, of what is packed by packPlace.
 const uint kFollowedPixels = 0u;
-const uint kDeviatingPixels = 1u;
-const uint kPoints = 2u;
-const uint kCells = 3u;
-const uint kLitCells = 4u;  // of chain kReflected; the next is of kTransmitted
-const uint kMixedCells = 6u;
+const uint kPoints = 1u;
+const uint kCells = 2u;
+const uint kLitCells = 3u;  // of chain kReflected; the next is of kTransmitted
+const uint kMixedCells = 5u;
 
-// Of a pixel: chains that are shown otherwise.
+// Of a followed pixel: chains that are shown otherwise.
 const uint kNoReflected = 1u << 15;
 const uint kNoTransmitted = 1u << 31;
+// Chains of which the way that carries most is shown otherwise, but not what it passes by.
+const uint kReflectedPassesBy = 1u << 14;
+const uint kTransmittedPassesBy = 1u << 30;
 
 uvec2 pictureSize() { return uvec2(textureSize(seen_image, 0)); }
 
@@ -70,12 +72,12 @@ bool nextPixel(Cell cell, inout uvec2 pixel) {
 }
 
 uint packPlace(uvec2 place) { return place.x | (place.y << 16); }
-uvec2 unpackPlace(uint packed_place) { return uvec2(packed_place & 0x7FFFu, packed_place >> 16 & 0x7FFFu); }
+uvec2 unpackPlace(uint packed_place) { return uvec2(packed_place & 0x3FFFu, packed_place >> 16 & 0x3FFFu); }
 
 uint firstOf(uint list) {
   uvec2 size = pictureSize(), points = pointCount();
   uint pixels = size.x * size.y;
-  return list < kPoints ? list * pixels : 2u * pixels + (list - kPoints) * (points.x * points.y);
+  return list < kPoints ? 0u : pixels + (list - kPoints) * (points.x * points.y);
 }
 
 /// Threads of a group that goes through a list, and how many groups there are at the most: a list that is longer is gone

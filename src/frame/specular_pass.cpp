@@ -33,11 +33,10 @@ gpu::Image makeBandTable(gpu::Device& device, gpu::CommandRecorder& recorder) {
 
 // Constants of frame/specular.comp.glsl and frame/specular_grid.glsl.
 constexpr std::uint32_t kTaskConstant = 17, kSpacingConstant = 18;
-constexpr std::uint32_t kShowAll = 0, kFollowMost = 1, kShowOthers = 2;
+constexpr std::uint32_t kShow = 0, kFollowMost = 1;
 /// Of frame/specular_grid.glsl.
-constexpr std::uint32_t kListCount = 7, kPixelListCount = 2;
-constexpr std::uint32_t kFollowedPixels = 0, kDeviatingPixels = 1, kPoints = 2, kCells = 3, kLitCells = 4,
-                        kMixedCells = 6;
+constexpr std::uint32_t kListCount = 6, kPixelListCount = 1;
+constexpr std::uint32_t kFollowedPixels = 0, kPoints = 1, kCells = 2, kLitCells = 3, kMixedCells = 5;
 constexpr std::array<ListHead, kListCount> kNoLists{};
 /// Texels of a point: frame/specular_ends.glsl.
 constexpr std::uint32_t kEndTexels = 3, kBendTexels = 2, kChainCount = 2;
@@ -63,7 +62,7 @@ struct SpecularPass::Push {
   TriangleTree::Walk tree;
   std::uint32_t band_count;
   uvec2 shift;
-  std::uint32_t chain;
+  std::uint32_t stamp, chain;
 };
 
 SpecularPass::SpecularPass(gpu::Device& device, gpu::CommandRecorder& recorder, const SceneBuffers& buffers,
@@ -98,9 +97,9 @@ SpecularPass::SpecularPass(gpu::Device& device, gpu::CommandRecorder& recorder, 
                 name, true);
   };
   pixels_ = make(shaders::specular_pixels_comp, {kTexture, kTable, kTexture}, traits.constants(), "specular pixels");
-  follow_all_ = follow(kShowAll, "specular");
+  show_ = follow(kShow, "specular");
   if (following.spacing > 1) {
-    cells_ = make(shaders::specular_cells_comp, {kTexture, kTable, kStorage}, traits.constants(), "specular cells");
+    cells_ = make(shaders::specular_cells_comp, {kTexture, kTable}, traits.constants(), "specular cells");
     mixed_ = make(shaders::specular_mixed_comp, {kTexture, kTable}, traits.constants(), "specular mixed cells");
     follow_most_ = follow(kFollowMost, "specular points");
     agreement_ = make(shaders::specular_agreement_comp, {kTexture, kTable, kTexture, kStorage}, traits.pathConstants(),
@@ -109,7 +108,6 @@ SpecularPass::SpecularPass(gpu::Device& device, gpu::CommandRecorder& recorder, 
         make(shaders::specular_lit_comp,
              {kTexture, kTexture, kTexture, kTable, kTexture, kTable, kTexture, kTexture, kTexture, kStorage, kTexture},
              join(traits.constants(), of_ends), "specular lit", true);
-    follow_others_ = follow(kShowOthers, "specular others");
   }
   fitPicture(device);
 }
@@ -167,6 +165,7 @@ SpecularPass::Push SpecularPass::pushOf(const SamplePush& sample) const {
           .tree = inputs_.tree.walk(),
           .band_count = static_cast<std::uint32_t>(kBandCount),
           .shift = uvec2(place % side, place / side),
+          .stamp = stamp_,
           .chain = 0};
 }
 
@@ -193,13 +192,11 @@ void SpecularPass::recordPixels(gpu::CommandRecorder& recorder, const Push& push
 }
 
 void SpecularPass::recordCells(gpu::CommandRecorder& recorder, const Push& push) {
-  const std::vector<Use> uses =
-      buffers_.uses(Access::kComputeRead, {Use(inputs_.seen, Access::kComputeRead), Use(lists_, Access::kDispatchWrite),
-                                           Use(ends_, Access::kComputeWrite)});
+  const std::vector<Use> uses = buffers_.uses(
+      Access::kComputeRead, {Use(inputs_.seen, Access::kComputeRead), Use(lists_, Access::kDispatchWrite)});
   recorder.pass("specular cells", uses, [&](PassCommands& commands) {
     commands.bind(cells_);
-    commands.bindResources(
-        buffers_.bound({Bound(7, inputs_.seen, buffers_.sampler()), Bound(8, lists_), Bound(9, ends_)}));
+    commands.bindResources(buffers_.bound({Bound(7, inputs_.seen, buffers_.sampler()), Bound(8, lists_)}));
     commands.pushConstants(push);
     commands.dispatch(gpu::groupsOf(pointCount().x, 8), gpu::groupsOf(pointCount().y, 8));
   });
@@ -285,6 +282,7 @@ void SpecularPass::recordFollowing(gpu::CommandRecorder& recorder, const gpu::Co
 }
 
 void SpecularPass::record(gpu::CommandRecorder& recorder, const SamplePush& sample) {
+  ++stamp_;
   const Push push = pushOf(sample);
   recorder.pass("clear lists", {Use(no_lists_, Access::kTransferRead), Use(lists_, Access::kTransferWrite)},
                 [&](PassCommands& commands) { commands.copy(no_lists_, lists_, sizeof(kNoLists)); });
@@ -293,11 +291,10 @@ void SpecularPass::record(gpu::CommandRecorder& recorder, const SamplePush& samp
     recordFollowing(recorder, follow_most_, "specular points", kPoints, push);
     recordAgreement(recorder, push);
     recordLit(recorder, push);
-    recordFollowing(recorder, follow_others_, "specular others", kDeviatingPixels, push);
   } else {
     recordPixels(recorder, push);
   }
-  recordFollowing(recorder, follow_all_, "specular", kFollowedPixels, push);
+  recordFollowing(recorder, show_, "specular", kFollowedPixels, push);
 }
 
 }  // namespace nephroid

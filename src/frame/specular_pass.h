@@ -69,10 +69,11 @@ class SpecularPass {
   const SceneBuffers& buffers_;
   Inputs inputs_;
   Following following_;
-  gpu::ComputePipeline pixels_, follow_all_;
-  gpu::ComputePipeline cells_, mixed_, follow_most_, agreement_, lit_, follow_others_;  ///< where there are cells
-  ReceiverMap no_receivers_;                                                            ///< bound where there are none
+  gpu::ComputePipeline pixels_, show_;
+  gpu::ComputePipeline cells_, mixed_, follow_most_, agreement_, lit_;  ///< where there are cells
+  ReceiverMap no_receivers_;                                            ///< bound where there are none
   gpu::Image bands_, sum_, caustic_sum_, ends_, bends_;
+  std::uint32_t stamp_ = 0;       ///< of the latest sample
   gpu::Buffer no_lists_, lists_;  ///< the heads of empty lists; heads and lists
 };
 

@@ -10,5 +10,6 @@ layout(push_constant, scalar) uniform Push {
   float tree_grid_scale;
   uint band_count;
   uvec2 shift;  // of the grid of cells against the picture, in pixels
+  uint stamp;   // of the sample: ends that were noted in others agree with none of its own
   uint chain;   // that a pass over cells is about: kReflected, kTransmitted
 };
