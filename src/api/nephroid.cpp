@@ -159,7 +159,7 @@ void Picture::writePng(const std::string& path, std::string_view layer, const Pn
 
 Picture render(Scene& scene, const RenderRequest& request) {
   auto& impl = SceneAccess::get(scene);
-  const Technique& technique = findTechnique(request.technique);
+  const Technique& technique = chooseTechnique(request.technique, request.device);
   const RenderSettings settings = makeSettings(request, technique);
   impl.complete();
   const Camera camera = selectCamera(impl.data, impl.camera_choice);

@@ -6,6 +6,7 @@
 #include "techniques/reference/reference.h"
 #include "techniques/technique.h"
 #ifdef NEPHROID_VULKAN
+#include "gpu/device_survey.h"
 #include "techniques/caustic_map/caustic_map.h"
 #include "techniques/none/none.h"
 #endif
@@ -31,6 +32,18 @@ const Technique& findTechnique(std::string_view name) {
     names.push_back(technique.name);
   }
   throw UsageError(fmt::format("no technique '{}'; there are: {}", name, fmt::join(names, ", ")));
+}
+
+const Technique& chooseTechnique(std::string_view name, std::string_view device) {
+  if (name != kAutoTechnique) return findTechnique(name);
+#ifdef NEPHROID_VULKAN
+  // Who names a device wants it, and is told if it is not there.
+  const bool on_vulkan = device == "auto" ? gpu::surveyDevices().auto_device.has_value() : device != "cpu";
+  if (on_vulkan) return findTechnique("caustic-map");
+#else
+  static_cast<void>(device);
+#endif
+  return findTechnique("reference");
 }
 
 bool takesDevice(const Technique& technique, std::string_view device) {

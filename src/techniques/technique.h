@@ -79,6 +79,12 @@ struct Technique {
 std::span<const Technique> techniques();
 /// @throws UsageError with the names there are
 const Technique& findTechnique(std::string_view name);
+/// What is chosen for the user: caustic-map on a Vulkan device, the reference where there is none.
+inline constexpr std::string_view kAutoTechnique = "auto";
+/// @param name    of a technique, or kAutoTechnique: then Vulkan is asked for its devices
+/// @param device  RenderSettings::device
+/// @throws UsageError as above
+const Technique& chooseTechnique(std::string_view name, std::string_view device);
 
 /// Whether the technique has a use for RenderSettings::device.
 bool takesDevice(const Technique& technique, std::string_view device);

@@ -9,6 +9,7 @@ namespace {
 
 RenderRequest smallRequest() {
   RenderRequest request;
+  request.technique = "reference";
   request.width = 16;
   request.height = 12;
   request.samples = 1;

@@ -64,6 +64,25 @@ TEST(NoneTechnique, BenchTellsTimeOfEachPassOfAFrame) {
   EXPECT_TRUE(found) << result.out;
 }
 
+TEST(DefaultTechnique, IsCausticMapOnAVulkanDevice) {
+  const TempFolder folder;
+  const ProcessResult result = runApart(
+      folder, {"render", "builtin:ring", "--size", "16x12", "--samples", "1", "-o", folder.file("x.exr"), "--verbose"});
+  ASSERT_EQ(result.exit_code, 0) << result.err;
+  const LayeredImage image = readExr(folder.file("x.exr"));
+  EXPECT_EQ(image.metadata.at("technique"), "caustic-map");
+  EXPECT_NE(image.metadata.at("device"), "cpu");
+  EXPECT_THAT(result.err, HasSubstr("caustic-map"));
+}
+
+TEST(DefaultTechnique, IsTheReferenceWithoutVulkan) {
+  const TempFolder folder;
+  const ProcessResult result = runApart(folder, {"render", "builtin:ring", "--size", "16x12", "--samples", "1",
+                                                 "--photons", "1000", "--device", "cpu", "-o", folder.file("x.exr")});
+  ASSERT_EQ(result.exit_code, 0) << result.err;
+  EXPECT_EQ(readExr(folder.file("x.exr")).metadata.at("technique"), "reference");
+}
+
 TEST(BenchError, ComparesWhatDrawsCausticsInRealTime) {
   const TempFolder folder;
   const ProcessResult result = runApart(folder, {"bench", "--error", "builtin:slab", "--size", "32x24", "--samples",

@@ -21,8 +21,8 @@ using ::testing::StartsWith;
 
 /// A render that takes a fraction of a second.
 std::vector<std::string> smallRender(const std::string& output, std::vector<std::string> more = {}) {
-  std::vector<std::string> arguments{"render", "builtin:ring", "-o", output,      "--size",
-                                     "32x24",  "--samples",    "1",  "--photons", "2000"};
+  std::vector<std::string> arguments{"render", "builtin:ring", "--technique", "reference", "-o",        output,
+                                     "--size", "32x24",        "--samples",   "1",         "--photons", "2000"};
   arguments.insert(arguments.end(), more.begin(), more.end());
   return arguments;
 }
@@ -83,8 +83,9 @@ TEST(Render, PngOfOneOtherLayerIsThatLayer) {
 
 TEST(Render, FramesAreNumberedAndMove) {
   const TempFolder folder;
-  const ProcessResult result = runNephroid({"render", "builtin:pool", "-o", folder.file("p.exr"), "--frames", "1..2",
-                                            "--fps", "2", "--size", "16x12", "--samples", "1", "--photons", "500"});
+  const ProcessResult result =
+      runNephroid({"render", "builtin:pool", "--technique", "reference", "-o", folder.file("p.exr"), "--frames", "1..2",
+                   "--fps", "2", "--size", "16x12", "--samples", "1", "--photons", "500"});
   ASSERT_EQ(result.exit_code, 0) << result.err;
   EXPECT_EQ(readExr(folder.file("p_0001.exr")).metadata.at("time"), "0.5");
   EXPECT_EQ(readExr(folder.file("p_0002.exr")).metadata.at("time"), "1");
@@ -104,8 +105,9 @@ TEST(Render, JsonGoesToStdoutAlone) {
 
 TEST(Render, CommandLineWinsOverStateFile) {
   const TempFolder folder;
-  writeText(folder.file("s.json"),
-            R"({"scene": "builtin:ring", "size": "8x6", "samples": 1, "photons": "500", "seed": 5, "half": true})");
+  writeText(
+      folder.file("s.json"),
+      R"({"scene": "builtin:ring", "technique": "reference", "size": "8x6", "samples": 1, "photons": "500", "seed": 5, "half": true})");
   const ProcessResult result =
       runNephroid({"render", "-o", folder.file("a.exr"), "--state", folder.file("s.json"), "--size", "10x6"});
   ASSERT_EQ(result.exit_code, 0) << result.err;
@@ -181,11 +183,12 @@ TEST(Interrupt, KeepsThePictureAsFarAsItCame) {
   for (const int signal : {SIGINT, SIGTERM}) {
     const TempFolder folder;
     // One layer that is seen at once, however slow the machine.
-    const ProcessResult result = runNephroid({"render", "builtin:slab", "-o", folder.file("a.exr"), "--size", "64x48",
-                                              "--seconds", "600", "--aov", "direct"},
-                                             {.while_running = [signal](pid_t process) {
-                                               interruptAfter(process, std::chrono::milliseconds(4000), signal);
-                                             }});
+    const ProcessResult result =
+        runNephroid({"render", "builtin:slab", "--technique", "reference", "-o", folder.file("a.exr"), "--size",
+                     "64x48", "--seconds", "600", "--aov", "direct"},
+                    {.while_running = [signal](pid_t process) {
+                      interruptAfter(process, std::chrono::milliseconds(4000), signal);
+                    }});
     EXPECT_EQ(result.exit_code, 130) << result.err;
     EXPECT_EQ(result.out, "");
     ASSERT_TRUE(std::filesystem::exists(folder.file("a.exr"))) << result.err;

@@ -96,6 +96,7 @@ void addStats(std::map<std::string, std::string>& facts, const RenderStats& stat
 
 void printVerbose(const Outcome& outcome) {
   const RenderStats& stats = outcome.result.stats;
+  writeStderr(fmt::format("{:<24} {:>10}", "technique", outcome.result.image.metadata.at("technique")));
   for (const StageTime& stage : stats.stages) writeStderr(fmt::format("{:<24} {:10.3f} s", stage.name, stage.seconds));
   writeStderr(fmt::format("{:<24} {:>10}\n{:<24} {:>10}\n{:<24} {:>10}", "rays", stats.rays, "photons", stats.photons,
                           "samples per pixel", stats.samples));
@@ -158,8 +159,9 @@ double estimateMemory(const RenderSettings& settings) {
   return 2.0 * sizeof(float) * channels * settings.width * settings.height / kBytesPerMib;
 }
 
-ExitCode runRender(const RenderOptions& options) {
+ExitCode runRender(RenderOptions options) {
   if (options.output.empty()) throw UsageError("render: no output given; add -o picture.png or -o picture.exr");
+  options.technique.name = chooseTechnique(options.technique.name, options.technique.device).name;
   RenderSettings settings = makeSettings(options.technique);
   settings.ledgers = options.verbose || options.json;
   settings.layers = parseLayerList(options.aov);

@@ -8,7 +8,7 @@ namespace nephroid::cli {
 namespace {
 
 std::string joinTechniqueNames() {
-  std::vector<std::string> names;
+  std::vector<std::string> names{std::string(kAutoTechnique)};
   for (const Technique& technique : techniques()) names.push_back(technique.name);
   return fmt::format("{}", fmt::join(names, "|"));
 }
@@ -28,7 +28,9 @@ void addTechniqueOptions(CLI::App& app, TechniqueOptions& options, std::string& 
                          const TechniqueDefaults& defaults) {
   beginGroup(app, "Technique");
   addValue(app, "--technique", name, "NAME",
-           {"How to draw; 'nephroid techniques' describes each.", defaults.name, joinTechniqueNames(), ""});
+           {"How to draw; 'nephroid techniques' describes each. auto is caustic-map where there is a Vulkan device and "
+            "--device is not cpu, else reference.",
+            defaults.name, joinTechniqueNames(), ""});
   addList(app, "--set", options.parameters, "KEY=VALUE",
           {"A parameter of the technique; 'nephroid techniques' lists them.", "none", "", ""});
   addValue(app, "--device", options.device, "DEVICE",
@@ -64,8 +66,9 @@ RenderSettings makeSettings(const TechniqueOptions& options) {
   settings.seed = options.seed;
   settings.threads = options.threads;
   settings.device = options.device;
-  checkDevice(findTechnique(options.name), options.device);
-  settings.params = ParamSet(findTechnique(options.name).params);
+  const Technique& technique = chooseTechnique(options.name, options.device);
+  checkDevice(technique, options.device);
+  settings.params = ParamSet(technique.params);
   for (const std::string& parameter : options.parameters) {
     const std::size_t equals = parameter.find('=');
     if (equals == std::string::npos || equals == 0)

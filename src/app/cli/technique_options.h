@@ -10,7 +10,7 @@
 namespace nephroid::cli {
 
 struct TechniqueOptions {
-  std::string name = "reference";
+  std::string name{kAutoTechnique};
   Size size{1024, 768};
   std::uint64_t photons = 0, samples = 0;
   double seconds = 0;
