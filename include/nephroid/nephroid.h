@@ -83,6 +83,9 @@ struct RenderRequest {
   std::uint64_t photons = 0;                  ///< emitted, over all lights and bands
   std::uint64_t samples = 0;                  ///< per pixel
   double seconds = 0;                         ///< ends a progressive render; the picture then varies between runs
+  /// Of progressive techniques: ends the render when relMSE, estimated from the standard errors of the layers asked
+  /// for, is down to this in each of them (docs/cli.md, "Errors").
+  double target_error = 0;
   std::uint64_t seed = 0;
   int threads = 0;  ///< 0: all cores; the picture does not depend on it
   /// What computes: "auto" (the best Vulkan device where the technique needs one, else the CPU), "cpu" (no Vulkan at

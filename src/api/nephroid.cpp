@@ -63,11 +63,14 @@ RenderSettings makeSettings(const RenderRequest& request, const Technique& techn
   settings.photons = request.photons;
   settings.samples = request.samples;
   settings.seconds = request.seconds;
+  settings.target_error = request.target_error;
   settings.seed = request.seed;
   settings.threads = request.threads;
   settings.device = request.device;
   settings.params = ParamSet(technique.params);
   for (const auto& [key, value] : request.parameters) settings.params.set(key, value);
+  if (!(request.target_error >= 0.0)) throw UsageError("target_error is below 0; 0 is none");
+  checkProgressive(technique, settings);
   return settings;
 }
 

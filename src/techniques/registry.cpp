@@ -51,4 +51,10 @@ void checkDevice(const Technique& technique, std::string_view device) {
                         device, technique.name));
 }
 
+void checkProgressive(const Technique& technique, const RenderSettings& settings) {
+  if (technique.is_progressive || settings.target_error == 0.0) return;
+  throw UsageError(fmt::format("--target-error: technique {} does not estimate its error; use --technique reference",
+                               technique.name));
+}
+
 }  // namespace nephroid

@@ -26,6 +26,7 @@ struct RenderSettings {
   std::uint64_t photons = 0;                  ///< emitted, all lights and bands
   std::uint64_t samples = 0;                  ///< per pixel
   double seconds = 0;
+  double target_error = 0;  ///< relMSE of the worst layer by its own estimate; only of progressive techniques
   std::uint64_t seed = 0;
   int threads = 0;              ///< 0: all cores
   std::string device = "auto";  ///< "auto", "cpu" or the number of a Vulkan device
@@ -61,7 +62,8 @@ struct Technique {
   std::string name;
   std::string text;
   std::string source;
-  bool on_vulkan = false;  ///< needs a Vulkan device; else computes on the CPU alone
+  bool on_vulkan = false;       ///< needs a Vulkan device; else computes on the CPU alone
+  bool is_progressive = false;  ///< converges, and knows how far it is: takes RenderSettings::target_error
   std::vector<ParamSpec> params;
   /// Of a real-time technique: draws the caustic of a frame. Null: it has none.
   /// @return  null if the scene has no caustic that it could draw
@@ -85,5 +87,7 @@ bool takesDevice(const Technique& technique, std::string_view device);
 /// Only its form: whether there is such a device is known once Vulkan is asked.
 /// @throws UsageError if the technique does not take it, or nothing is called so
 void checkDevice(const Technique& technique, std::string_view device);
+/// @throws UsageError if settings ask for what only a progressive technique can do, and it is none
+void checkProgressive(const Technique& technique, const RenderSettings& settings);
 
 }  // namespace nephroid

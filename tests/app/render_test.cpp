@@ -130,6 +130,30 @@ TEST(Render, BadStateFileIsBadInputThatNamesTheKey) {
   }
 }
 
+TEST(Render, TargetErrorEndsTheRenderAndErrorsAreLayers) {
+  const TempFolder folder;
+  const ProcessResult result =
+      runNephroid({"render", "builtin:slab", "-o", folder.file("a.exr"), "--size", "16x12", "--target-error", "0.05",
+                   "--photons", "200k", "--aov", "direct,direct_error,specular_caustic_bias"});
+  ASSERT_EQ(result.exit_code, 0) << result.err;
+  const LayeredImage image = readExr(folder.file("a.exr"));
+  ASSERT_NE(image.find("direct_error"), nullptr);
+  EXPECT_NE(image.find("specular_caustic_bias"), nullptr);
+  EXPECT_LE(std::stod(image.metadata.at("estimated_relmse.direct")), 0.05);
+  EXPECT_GT(std::stod(image.metadata.at("estimated_relmse.direct")), 0.0);
+}
+
+TEST(Render, TargetErrorOfATechniqueThatKnowsNoneIsWrongUsage) {
+  for (const std::string& technique : {std::string("reference"), std::string("caustic-map")}) {
+    if (runNephroid({"techniques", technique}).exit_code != 0) continue;  // built without Vulkan
+    const TempFolder folder;
+    const ProcessResult result = runNephroid(
+        smallRender(folder.file("a.exr"), {"--technique", technique, "--target-error", "0.1", "--aov", "normal"}));
+    EXPECT_EQ(result.exit_code, 2) << technique;
+    EXPECT_EQ(countLines(result.err), 1) << result.err;
+  }
+}
+
 TEST(Render, MissingAndBrokenScenesAreBadInput) {
   const TempFolder folder;
   writeText(folder.file("broken.glb"), "glTF but not really");

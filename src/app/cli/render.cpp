@@ -41,6 +41,7 @@ struct RenderOptions {
   std::string camera, output, frames;
   std::string aov = "beauty";
   float fps = 24;
+  double target_error = 0;
   bool stats = false, verbose = false, json = false;
 };
 
@@ -163,6 +164,8 @@ ExitCode runRender(const RenderOptions& options) {
   RenderSettings settings = makeSettings(options.technique);
   settings.ledgers = options.verbose || options.json;
   settings.layers = parseLayerList(options.aov);
+  settings.target_error = options.target_error;
+  checkProgressive(findTechnique(options.technique.name), settings);
   const std::optional<FrameRange> frames = parseFrames(options.frames);
   checkPicture(frames ? frameName(options.output, frames->first) : options.output, settings.layers, options.picture);
 
@@ -207,6 +210,17 @@ void addOutputOptions(CLI::App& app, RenderOptions& options) {
   endGroup(app);
 }
 
+void addConvergenceOptions(CLI::App& app, RenderOptions& options) {
+  beginGroup(app, "Budget");
+  addValue(
+      app, "--target-error", options.target_error, "X",
+      {"Ends the render when relMSE, estimated from the standard errors of the layers asked for, is down to this in "
+       "each of them; docs/cli.md explains it. Other budgets that are given still end it.",
+       "none", "1e-9 to 10", ""},
+      checkNumber(1e-9, 10));
+  endGroup(app);
+}
+
 void addAnimationOptions(CLI::App& app, RenderOptions& options) {
   beginGroup(app, "Animation");
   addValue(app, "--frames", options.frames, "A..B",
@@ -225,6 +239,7 @@ Command addRenderCommand(CLI::App& root) {
   addCameraOption(*app, options->camera);
   addOutputOptions(*app, *options);
   addTechniqueOptions(*app, options->technique, options->technique.name, describeDefaults(options->technique));
+  addConvergenceOptions(*app, *options);
   addAnimationOptions(*app, *options);
   return {app, [app, options] {
             if (!options->scene.state.empty()) applyStateFile(*app, options->scene.state);

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <atomic>
+#include <bit>
 #include <chrono>
 #include <cmath>
 #include <memory>
@@ -11,6 +12,7 @@
 #include "core/parallel.h"
 #include "nephroid/error.h"
 #include "techniques/layers.h"
+#include "techniques/reference/error_estimate.h"
 #include "techniques/reference/geometry_layers.h"
 #include "techniques/reference/path_tracer.h"
 #include "techniques/reference/photon_batch.h"
@@ -27,8 +29,34 @@ constexpr double kRadiusAlpha = 2.0 / 3.0;
 constexpr std::uint64_t kDefaultSamples = 32;
 constexpr std::uint64_t kDefaultPhotons = 2'000'000;
 
+/// Batches that a budget is cut into where errors are estimated: the relative error of a standard error from B batches
+/// is 1/√(2(B − 1)), here 18 %.
+constexpr std::uint64_t kErrorBatches = 16;
+/// Passes from the eye in the first batches of an estimate, at most. Points of the sampler are well spread together, so
+/// that a mean over them errs less than the spread of single ones says: batches of four know of that.
+constexpr std::uint64_t kErrorBatchPasses = 4;
+/// Later batches are as long as this share of all passes, for the same reason (see nextErrorBatch).
+constexpr std::uint64_t kErrorBatchShare = 4;
+/// Batches of each direction before an estimate may end a render: of fewer, even the mean over a picture is unsure.
+constexpr std::uint64_t kFirstErrorBatches = 8;
+
 using Clock = std::chrono::steady_clock;
 double secondsSince(Clock::time_point start) { return std::chrono::duration<double>(Clock::now() - start).count(); }
+
+/// Layers whose error has to be estimated: because it is a layer too, or because it ends the render.
+std::vector<std::string> layersWithError(const RenderSettings& settings) {
+  std::vector<std::string> layers;
+  for (const LayerInfo& info : layerInfos()) {
+    const auto asked = [&](std::string_view name) {
+      return std::find(settings.layers.begin(), settings.layers.end(), name) != settings.layers.end();
+    };
+    const std::string error = std::string(info.name) + "_error";
+    const auto has_error = [&](const LayerInfo& other) { return other.name == error; };
+    if (std::none_of(layerInfos().begin(), layerInfos().end(), has_error)) continue;
+    if (asked(error) || (settings.target_error > 0.0 && asked(info.name))) layers.emplace_back(info.name);
+  }
+  return layers;
+}
 
 /// One progressive render.
 class ReferenceRender {
@@ -42,6 +70,7 @@ class ReferenceRender {
         needs_(settings.layers),
         world_(scene, camera, settings.width, settings.height, makeOptions(settings)),
         film_(settings.width, settings.height, needs_),
+        errors_(film_, layersWithError(settings)),
         path_tracer_(world_, needs_) {
     const bool gather = settings.params.getString("specular-caustics") == "photons" && needs_.throughSpecular();
     if ((world_.options.light_tracing && needs_.lightTraced()) || gather)
@@ -51,6 +80,8 @@ class ReferenceRender {
     gather_ = gather && light_tracer_;
     if (gather_) path_tracer_.gatherFrom(&caustics_);
     if (light_tracer_) shareLedgers();
+    if (settings.target_error > 0.0 && errors_.empty())
+      throw UsageError("a target error needs a layer that converges, such as beauty; those asked for are exact");
     chooseBudgets();
     addStage("build", secondsSince(start_));
   }
@@ -84,19 +115,22 @@ class ReferenceRender {
   }
 
   void chooseBudgets() {
-    const bool timed_only = settings_.seconds > 0 && settings_.samples == 0 && settings_.photons == 0;
+    const bool open = settings_.samples == 0 && settings_.photons == 0 && settings_.seconds > 0;
+    open_ended_ = open || settings_.target_error > 0.0;
     constexpr std::uint64_t kUnlimited = std::uint64_t{1} << 62;
-    samples_budget_ = settings_.samples ? settings_.samples : timed_only ? kUnlimited : kDefaultSamples;
-    photons_budget_ = settings_.photons ? settings_.photons : timed_only ? kUnlimited : kDefaultPhotons;
+    samples_budget_ = settings_.samples ? settings_.samples : open_ended_ ? kUnlimited : kDefaultSamples;
+    photons_budget_ = settings_.photons ? settings_.photons : open_ended_ ? kUnlimited : kDefaultPhotons;
     if (!needs_.eyeTraced(world_.options.light_tracing)) samples_budget_ = 0;
     if (!light_tracer_) photons_budget_ = 0;
     if (light_tracer_) makePhotonBatch(photons_budget_ < kUnlimited);
+    error_batch_passes_ = std::clamp<std::uint64_t>(samples_budget_ / kErrorBatches, 1, kErrorBatchPasses);
   }
 
   /// Equal batches, so that each counts the same.
   void makePhotonBatch(bool limited) {
     constexpr std::uint64_t kMax = PhotonBatch::kMaxPhotons;
-    const std::uint64_t batches = limited ? (photons_budget_ + kMax - 1) / kMax : 1;
+    const std::uint64_t fewest = errors_.empty() ? 1 : std::min(kErrorBatches, photons_budget_);
+    const std::uint64_t batches = limited ? std::max((photons_budget_ + kMax - 1) / kMax, fewest) : 1;
     const std::uint64_t photons = limited ? (photons_budget_ + batches - 1) / batches : kMax;
     const std::size_t pixels = static_cast<std::size_t>(settings_.width) * settings_.height;
     photon_batch_ = std::make_unique<PhotonBatch>(*light_tracer_, static_cast<std::uint32_t>(photons), pixels);
@@ -110,23 +144,19 @@ class ReferenceRender {
     if (!samplesLeft() && !photonsLeft()) return true;
     // Time may end a render only when every layer has something in it.
     const bool something = (samples_budget_ == 0 || samples_done_ > 0) && (photons_budget_ == 0 || photons_done_ > 0);
-    return something && timeIsUp();
+    if (!something) return false;
+    if (settings_.target_error > 0.0) {
+      // More of one direction alone need not ever lead to the target.
+      const bool spent = (samples_budget_ > 0 && !samplesLeft()) || (photons_budget_ > 0 && !photonsLeft());
+      if (spent || (errorIsKnown() && error_.error.total() <= settings_.target_error)) return true;
+    }
+    return timeIsUp();
   }
 
-  /// One pass of whichever direction is behind: by time if time is the budget, else by share of its budget.
+  /// One pass of whichever direction is behind.
   void step() {
-    bool photons = photonsLeft();
-    if (photons && samplesLeft()) {
-      // What is gathered must have been emitted; otherwise the picture comes first.
-      if (samples_done_ == 0)
-        photons = gather_ && photons_done_ == 0;
-      else if (photons_done_ > 0)
-        photons = settings_.seconds > 0
-                      ? light_seconds_ <= path_seconds_
-                      : share(photons_done_, photons_budget_) <= share(samples_done_, samples_budget_);
-    }
     const Clock::time_point begin = Clock::now();
-    if (photons) {
+    if (photonsAreNext()) {
       tracePhotons();
       light_seconds_ += secondsSince(begin);
     } else {
@@ -134,6 +164,27 @@ class ReferenceRender {
       path_seconds_ += secondsSince(begin);
     }
   }
+  bool photonsAreNext() const {
+    if (!photonsLeft() || !samplesLeft()) return photonsLeft();
+    // What is gathered must have been emitted; otherwise the picture comes first.
+    if (samples_done_ == 0) return gather_ && photons_done_ == 0;
+    if (photons_done_ == 0) return true;
+    if (settings_.target_error > 0.0) return photonsLessenError();
+    if (settings_.seconds > 0) return light_seconds_ <= path_seconds_;
+    return share(photons_done_, photons_budget_) <= share(samples_done_, samples_budget_);
+  }
+  /// The direction that lessens the error more by another ray: a variance falls by its share per pass, and a pass costs
+  /// rays. Rays, not seconds: equal renders must take equal steps.
+  bool photonsLessenError() const {
+    // Paths that gather the same photons over and over err alike.
+    if (gather_ && samples_done_ - samples_at_photons_ < error_batch_passes_) return false;
+    if (gather_ && batches_done_ < samples_done_ / error_batch_passes_) return true;
+    if (!errorIsKnown()) return share(photons_done_, kDefaultPhotons) <= share(samples_done_, kDefaultSamples);
+    return error_.error.from_lights * static_cast<double>(path_rays_) >=
+           error_.error.from_eye * static_cast<double>(light_rays_);
+  }
+  bool errorIsKnown() const { return errors_.batches() >= kFirstErrorBatches; }
+
   static double share(std::uint64_t done, std::uint64_t budget) {
     return static_cast<double>(done) / static_cast<double>(budget);
   }
@@ -158,8 +209,20 @@ class ReferenceRender {
       for (int y = 0; y < settings_.height; ++y) partial_rows_[y] = rows[y].rays > 0;
       return;
     }
-    for (const PathCounters& row : rows) rays_ += row.rays, not_finite_ += row.not_finite;
+    for (const PathCounters& row : rows) path_rays_ += row.rays, not_finite_ += row.not_finite;
     ++samples_done_;
+    if (!gather_ || !photonsLeft()) closeEyeBatch();
+  }
+
+  /// Passes of the next batch: aligned blocks of powers of two, which are what the sampler spreads well.
+  std::uint64_t nextErrorBatch() const {
+    return std::max(error_batch_passes_, std::bit_floor(errors_.closedEyePasses()) / kErrorBatchShare);
+  }
+
+  void closeEyeBatch() {
+    if (errors_.empty() || samples_done_ - errors_.closedEyePasses() < nextErrorBatch()) return;
+    errors_.closeEyeBatch(samples_done_);
+    if (settings_.target_error > 0.0) error_ = errors_.worst();
   }
 
   void tracePhotons() {
@@ -167,11 +230,16 @@ class ReferenceRender {
     photon_batch_->visitSplats([&](const Splat& splat, float scale) { addSplat(splat, scale); });
     for (const PhotonBatch::Chunk& chunk : photon_batch_->chunks()) {
       ledgers_[chunk.emitter].add(chunk.tally.ledger);
-      rays_ += chunk.tally.rays;
+      light_rays_ += chunk.tally.rays;
       not_finite_ += chunk.tally.not_finite;
       photons_done_ += static_cast<std::uint64_t>(chunk.tally.ledger.emitted_count);
     }
     ++batches_done_;
+    if (!errors_.empty()) errors_.closeLightBatch(batches_done_);
+    // Paths that gather the same photons belong to the same batch.
+    if (gather_) closeEyeBatch();
+    if (settings_.target_error > 0.0) error_ = errors_.worst();
+    samples_at_photons_ = samples_done_;
     if (!gather_) return;
     std::vector<GridPhoton> deposits;
     for (PhotonBatch::Chunk& chunk : photon_batch_->chunks()) {
@@ -223,36 +291,34 @@ class ReferenceRender {
     if (samples_budget_ > 0) by_budget += share(samples_done_, samples_budget_), ++budgets;
     if (photons_budget_ > 0) by_budget += share(photons_done_, photons_budget_), ++budgets;
     if (budgets > 0) fraction = std::max(fraction, by_budget / budgets);
-    progress_->update(std::min(fraction, 1.0), fmt::format("{} samples, {:.1f} M photons", samples_done_,
-                                                           static_cast<double>(photons_done_) * 1e-6));
+    std::string status =
+        fmt::format("{} samples, {:.1f} M photons", samples_done_, static_cast<double>(photons_done_) * 1e-6);
+    if (settings_.target_error > 0.0 && errorIsKnown()) {
+      // The error falls with the inverse of the work.
+      fraction = std::max(fraction, settings_.target_error / error_.error.total());
+      status = fmt::format("{} relMSE {:.2g}, {}", error_.layer, error_.error.total(), status);
+    }
+    progress_->update(std::min(fraction, 1.0), status);
   }
 
   /// From sums to pictures.
   void develop(RenderResult& result) {
+    // Of a pass that was cut short some rows hold more than others: no batch.
+    if (!errors_.empty() && partial_rows_.empty()) errors_.closeEyeBatch(samples_done_);
     for (const std::string& name : settings_.layers) {
       const auto geometry =
           std::find_if(geometry_.begin(), geometry_.end(), [&](const Layer& l) { return l.name == name; });
       if (geometry != geometry_.end())
         result.image.layers.push_back(std::move(*geometry));
+      else if (const std::string_view erring = erringLayer(name); !erring.empty())
+        result.image.layers.push_back({name, errors_.standardError(erring, samples_done_, batches_done_)});
       else
         result.image.layers.push_back({name, developLayer(name)});
     }
   }
 
   Image developLayer(std::string_view name) const {
-    struct Part {
-      std::string_view layer;
-      const FilmPlane* from_eye;
-      const FilmPlane* from_lights;
-    };
-    const Part parts[] = {{"emission", &film_.emission, nullptr},
-                          {"direct", &film_.direct, nullptr},
-                          {"caustic", &film_.caustic_from_eye, &film_.caustic},
-                          {"specular", &film_.specular, nullptr},
-                          {"indirect", &film_.indirect_from_eye, &film_.indirect},
-                          {"specular_caustic", &film_.specular_caustic, nullptr},
-                          {"irradiance", &film_.irradiance_from_eye, &film_.irradiance},
-                          {"irradiance_caustic", &film_.irradiance_caustic_from_eye, &film_.irradiance_caustic}};
+    const std::vector<LayerPlanes> parts = planesOf(film_, name);
     Image image(settings_.width, settings_.height, 3);
     const double by_batches = batches_done_ > 0 ? 1.0 / static_cast<double>(batches_done_) : 0.0;
     for (std::size_t pixel = 0; pixel < image.pixels.size() / 3; ++pixel) {
@@ -260,12 +326,10 @@ class ReferenceRender {
       const std::uint64_t samples = samples_done_ + (!partial_rows_.empty() && partial_rows_[row] ? 1 : 0);
       const double by_samples = samples > 0 ? 1.0 / static_cast<double>(samples) : 0.0;
       vec3 sum(0.0F);
-      for (const Part& part : parts) {
-        const bool summed = name == "beauty" && findLayerInfo(part.layer).summed;
-        if (part.layer != name && !summed) continue;
+      for (const LayerPlanes& part : parts) {
         // Each layer is rounded to float before the sum, so that the files' layers add up to the files' beauty.
         dvec3 value(0.0);
-        if (part.from_eye->active()) value += part.from_eye->at(pixel) * by_samples;
+        if (part.from_eye && part.from_eye->active()) value += part.from_eye->at(pixel) * by_samples;
         if (part.from_lights && part.from_lights->active()) value += part.from_lights->at(pixel) * by_batches;
         sum += vec3(value);
       }
@@ -282,7 +346,7 @@ class ReferenceRender {
     addStage("path tracing", path_seconds_);
     addStage("light tracing", light_seconds_);
     result.stats.stages = stages_;
-    result.stats.rays = rays_;
+    result.stats.rays = path_rays_ + light_rays_;
     result.stats.photons = photons_done_;
     result.stats.samples = samples_done_;
     result.stats.not_finite = not_finite_;
@@ -292,6 +356,8 @@ class ReferenceRender {
     metadata["seed"] = std::to_string(settings_.seed);
     metadata["samples"] = std::to_string(samples_done_);
     metadata["photons"] = std::to_string(photons_done_);
+    for (const std::string& layer : layersWithError(settings_))
+      metadata["estimated_relmse." + layer] = fmt::format("{:.4g}", errors_.relMse(layer).total());
     for (const ParamSpec& spec : settings_.params.specs())
       metadata["set." + spec.name] = settings_.params.toText(spec.name);
     addNotes(result);
@@ -301,7 +367,7 @@ class ReferenceRender {
     bool any_delta = false;
     for (const Light& light : world_.scene.scene().lights)
       any_delta = any_delta || (light.kind == LightKind::kSun ? light.angle_deg == 0.0F : light.radius == 0.0F);
-    if (any_delta && (needs_.specular || needs_.specular_caustic))
+    if (any_delta && needs_.throughSpecular())
       result.notes.emplace_back(gather_ || !light_tracer_
                                     ? "light of sources without a size that returns through mirrors or glass after two "
                                       "or more diffuse bounces is missing"
@@ -309,6 +375,10 @@ class ReferenceRender {
                                       "give them extras.radius or extras.angle");
     if (any_delta && !world_.options.light_tracing && needs_.caustic)
       result.notes.emplace_back("caustic-estimator=path finds no caustic of lights without a size");
+    if (!errors_.empty() && errors_.batches() < 2)
+      result.notes.emplace_back("standard errors are infinite: they take two batches at least; raise the budget");
+    if (needs_.specular_caustic_bias && !gather_)
+      result.notes.emplace_back("specular_caustic_bias is black: nothing is gathered under a kernel");
     if (not_finite_ > 0)
       result.notes.push_back(fmt::format("{} path contributions were not finite and were dropped", not_finite_));
   }
@@ -328,6 +398,7 @@ class ReferenceRender {
   LayerNeeds needs_;
   ReferenceWorld world_;
   Film film_;
+  ErrorEstimate errors_;
   PathTracer path_tracer_;
   std::unique_ptr<LightTracer> light_tracer_;
   std::unique_ptr<PhotonBatch> photon_batch_;
@@ -340,7 +411,10 @@ class ReferenceRender {
   float first_radius_ = 0.0F;
   double radius_squared_ = 0.0;
   std::uint64_t samples_budget_ = 0, photons_budget_ = 0, samples_done_ = 0, photons_done_ = 0, batches_done_ = 0;
-  std::uint64_t rays_ = 0, not_finite_ = 0;
+  std::uint64_t path_rays_ = 0, light_rays_ = 0, not_finite_ = 0;
+  ErrorEstimate::Worst error_;  ///< at the last closed batches; only with a target
+  std::uint64_t error_batch_passes_ = 1, samples_at_photons_ = 0;
+  bool open_ended_ = false;  ///< budgets that were not given are unlimited
   double path_seconds_ = 0, light_seconds_ = 0;
 };
 
@@ -363,6 +437,7 @@ Technique makeReferenceTechnique() {
       "path tracing and light tracing on the CPU, progressive: unbiased but for caustics in mirrors and through glass, "
       "whose kernels shrink; the truth for all others";
   technique.source = "Kajiya 1986; Arvo 1986; Veach 1997; Knaus & Zwicker 2011";
+  technique.is_progressive = true;
   technique.params = {
       makeSpecularAlphaParam(),
       {"max-bounces", 64, 1, 1024, "", "scattering events on a path before it is given up", {}},
