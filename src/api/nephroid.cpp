@@ -64,6 +64,7 @@ RenderSettings makeSettings(const RenderRequest& request, const Technique& techn
   settings.samples = request.samples;
   settings.seconds = request.seconds;
   settings.target_error = request.target_error;
+  settings.checkpoint = {request.checkpoint, request.checkpoint_interval_s};
   settings.seed = request.seed;
   settings.threads = request.threads;
   settings.device = request.device;
@@ -169,6 +170,7 @@ Picture render(Scene& scene, const RenderRequest& request) {
   StopToken stop;
   CallbackSink sink(request, stop);
   RenderResult result = technique.render(impl.data, camera, settings, &sink, &stop);
+  if (!result.checkpoint_failure.empty()) result.notes.push_back(result.checkpoint_failure);
   result.image.metadata.emplace("scene", impl.data.name);
   result.image.metadata.emplace("version", version());
   return SceneAccess::makePicture(std::move(result));

@@ -32,6 +32,11 @@ class BatchSpread {
 
   bool active() const { return closed_.active(); }
   const FilmPlane& closedSum() const { return closed_; }
+  template <class State>
+  void visitState(State& state) {
+    state.values(closed_.values());
+    state.values(squares_.values());
+  }
 
  private:
   FilmPlane closed_;   ///< sum of all closed batches
@@ -72,6 +77,17 @@ class ErrorEstimate {
     RelativeError error;
   };
   Worst worst() const;
+
+  /// Visits all that a checkpoint keeps of it, with `value(number)` and `values(span)`, in a fixed order.
+  template <class State>
+  void visitState(State& state) {
+    for (Direction* direction : {&eye_, &lights_}) {
+      state.value(direction->batches);
+      state.value(direction->passes);
+    }
+    for (LayerSpread& layer : layers_)
+      for (BatchSpread* spread : {&layer.eye, &layer.lights}) spread->visitState(state);
+  }
 
  private:
   struct Direction {

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -22,6 +23,8 @@ class FilmPlane {
     p[0] += value.x, p[1] += value.y, p[2] += value.z;
   }
   dvec3 at(std::size_t pixel) const { return {values_[3 * pixel], values_[3 * pixel + 1], values_[3 * pixel + 2]}; }
+  /// All of it, RGB by pixel.
+  std::span<double> values() { return values_; }
   void set(std::size_t pixel, dvec3 value) {
     double* p = values_.data() + 3 * pixel;
     p[0] = value.x, p[1] = value.y, p[2] = value.z;
@@ -59,6 +62,15 @@ struct Film {
       irradiance_from_eye, irradiance_caustic_from_eye;
   // From the lights, to be divided by the number of batches.
   FilmPlane caustic, indirect, irradiance, irradiance_caustic;
+
+  /// Every plane, in a fixed order.
+  template <class Visit>
+  void visitPlanes(const Visit& visit) {
+    for (FilmPlane* plane : {&emission, &direct, &caustic_from_eye, &specular, &indirect_from_eye, &specular_caustic,
+                             &specular_caustic_bias, &irradiance_from_eye, &irradiance_caustic_from_eye, &caustic,
+                             &indirect, &irradiance, &irradiance_caustic})
+      visit(*plane);
+  }
 };
 
 /// The sums that make one layer; a null or inactive plane adds nothing.

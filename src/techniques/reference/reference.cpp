@@ -7,11 +7,17 @@
 #include <bit>
 #include <chrono>
 #include <cmath>
+#include <filesystem>
 #include <memory>
+#include <system_error>
+#include <utility>
 
 #include "core/parallel.h"
 #include "nephroid/error.h"
+#include "nephroid/nephroid.h"
+#include "scene/fingerprint.h"
 #include "techniques/layers.h"
+#include "techniques/reference/checkpoint.h"
 #include "techniques/reference/error_estimate.h"
 #include "techniques/reference/geometry_layers.h"
 #include "techniques/reference/path_tracer.h"
@@ -67,11 +73,13 @@ class ReferenceRender {
         settings_(settings),
         progress_(progress),
         stop_(stop),
+        camera_(camera),
         needs_(settings.layers),
         world_(scene, camera, settings.width, settings.height, makeOptions(settings)),
         film_(settings.width, settings.height, needs_),
         errors_(film_, layersWithError(settings)),
-        path_tracer_(world_, needs_) {
+        path_tracer_(world_, needs_),
+        row_done_(static_cast<std::size_t>(settings.height), 0) {
     const bool gather = settings.params.getString("specular-caustics") == "photons" && needs_.throughSpecular();
     if ((world_.options.light_tracing && needs_.lightTraced()) || gather)
       light_tracer_ = std::make_unique<LightTracer>(
@@ -90,14 +98,22 @@ class ReferenceRender {
     RenderResult result;
     result.image.width = settings_.width, result.image.height = settings_.height;
     timed("geometry", [&] { geometry_ = renderGeometryLayers(world_, settings_.layers); });
+    std::error_code unknown;  // then the file is not read, and writing it tells why
+    if (std::filesystem::exists(settings_.checkpoint.path, unknown)) resume(result);
+    Clock::time_point saved = Clock::now();
     while (!finished()) {
       if (stopped()) break;
       step();
+      if (keepsCheckpoint() && secondsSince(saved) >= settings_.checkpoint.interval_s) {
+        save(result);
+        saved = Clock::now();
+      }
       report();
     }
     result.interrupted = stopped();
     const bool nothing = (samples_budget_ > 0 && samples_done_ == 0) && (photons_budget_ == 0 || photons_done_ == 0);
     if (result.interrupted && nothing) throw InterruptedError("interrupted before there was anything to keep");
+    if (keepsCheckpoint()) save(result);
     develop(result);
     describe(result);
     return result;
@@ -115,25 +131,29 @@ class ReferenceRender {
   }
 
   void chooseBudgets() {
-    const bool open = settings_.samples == 0 && settings_.photons == 0 && settings_.seconds > 0;
-    open_ended_ = open || settings_.target_error > 0.0;
+    const bool timed_only = settings_.seconds > 0 && settings_.samples == 0 && settings_.photons == 0;
+    const bool open_ended = timed_only || settings_.target_error > 0.0;
     constexpr std::uint64_t kUnlimited = std::uint64_t{1} << 62;
-    samples_budget_ = settings_.samples ? settings_.samples : open_ended_ ? kUnlimited : kDefaultSamples;
-    photons_budget_ = settings_.photons ? settings_.photons : open_ended_ ? kUnlimited : kDefaultPhotons;
+    samples_budget_ = settings_.samples ? settings_.samples : open_ended ? kUnlimited : kDefaultSamples;
+    photons_budget_ = settings_.photons ? settings_.photons : open_ended ? kUnlimited : kDefaultPhotons;
     if (!needs_.eyeTraced(world_.options.light_tracing)) samples_budget_ = 0;
     if (!light_tracer_) photons_budget_ = 0;
-    if (light_tracer_) makePhotonBatch(photons_budget_ < kUnlimited);
+    if (light_tracer_) makePhotonBatch(chooseBatchPhotons(photons_budget_ < kUnlimited));
     error_batch_passes_ = std::clamp<std::uint64_t>(samples_budget_ / kErrorBatches, 1, kErrorBatchPasses);
   }
 
   /// Equal batches, so that each counts the same.
-  void makePhotonBatch(bool limited) {
+  std::uint32_t chooseBatchPhotons(bool limited) const {
     constexpr std::uint64_t kMax = PhotonBatch::kMaxPhotons;
+    if (!limited) return kMax;
     const std::uint64_t fewest = errors_.empty() ? 1 : std::min(kErrorBatches, photons_budget_);
-    const std::uint64_t batches = limited ? std::max((photons_budget_ + kMax - 1) / kMax, fewest) : 1;
-    const std::uint64_t photons = limited ? (photons_budget_ + batches - 1) / batches : kMax;
+    const std::uint64_t batches = std::max((photons_budget_ + kMax - 1) / kMax, fewest);
+    return static_cast<std::uint32_t>((photons_budget_ + batches - 1) / batches);
+  }
+  void makePhotonBatch(std::uint32_t photons) {
     const std::size_t pixels = static_cast<std::size_t>(settings_.width) * settings_.height;
-    photon_batch_ = std::make_unique<PhotonBatch>(*light_tracer_, static_cast<std::uint32_t>(photons), pixels);
+    batch_photons_ = photons;
+    photon_batch_ = std::make_unique<PhotonBatch>(*light_tracer_, photons, pixels);
   }
 
   bool stopped() const { return stop_ && stop_->requested(); }
@@ -189,30 +209,24 @@ class ReferenceRender {
     return static_cast<double>(done) / static_cast<double>(budget);
   }
 
-  /// One sample per pixel. Pixels are independent, so the order of tiles does not matter.
+  /// One sample per pixel. Pixels are independent, so the order of tiles does not matter. If it is stopped, the rows
+  /// that are done are remembered, and the next call does the others.
   void tracePaths() {
     const auto sample = static_cast<std::uint32_t>(samples_done_);
-    std::vector<PathCounters> rows(static_cast<std::size_t>(settings_.height));
-    std::atomic<bool> complete{true};
-    parallelFor(static_cast<std::size_t>(settings_.height), [&](std::size_t row) {
+    std::vector<PathCounters> rows(row_done_.size());
+    parallelFor(row_done_.size(), [&](std::size_t row) {
+      if (row_done_[row] || (stopped() && samples_done_ > 0)) return;
       const int y = static_cast<int>(row);
-      if (stopped() && samples_done_ > 0) {
-        complete = false;
-        return;
-      }
-      for (int x = 0; x < settings_.width; ++x) path_tracer_.tracePath(x, y, sample, film_, rows[y]);
+      for (int x = 0; x < settings_.width; ++x) path_tracer_.tracePath(x, y, sample, film_, rows[row]);
+      row_done_[row] = 1;
     });
-    // A pass that was cut short has some rows more than others: those rows know it by the pass count they are divided
-    // by.
-    if (!complete) {
-      partial_rows_.assign(static_cast<std::size_t>(settings_.height), false);
-      for (int y = 0; y < settings_.height; ++y) partial_rows_[y] = rows[y].rays > 0;
-      return;
-    }
     for (const PathCounters& row : rows) path_rays_ += row.rays, not_finite_ += row.not_finite;
+    if (std::find(row_done_.begin(), row_done_.end(), 0) != row_done_.end()) return;
+    std::fill(row_done_.begin(), row_done_.end(), std::uint8_t{0});
     ++samples_done_;
     if (!gather_ || !photonsLeft()) closeEyeBatch();
   }
+  bool isBetweenPasses() const { return std::find(row_done_.begin(), row_done_.end(), 1) == row_done_.end(); }
 
   /// Passes of the next batch: aligned blocks of powers of two, which are what the sampler spreads well.
   std::uint64_t nextErrorBatch() const {
@@ -241,27 +255,34 @@ class ReferenceRender {
     if (settings_.target_error > 0.0) error_ = errors_.worst();
     samples_at_photons_ = samples_done_;
     if (!gather_) return;
+    const std::vector<GridPhoton> deposits = collectDeposits();
+    shrinkKernel(deposits);
+    replaceCaustics(deposits);
+  }
+
+  std::vector<GridPhoton> collectDeposits() const {
     std::vector<GridPhoton> deposits;
-    for (PhotonBatch::Chunk& chunk : photon_batch_->chunks()) {
-      for (GridPhoton& photon : chunk.tally.deposits) {
+    for (const PhotonBatch::Chunk& chunk : std::as_const(*photon_batch_).chunks()) {
+      for (GridPhoton photon : chunk.tally.deposits) {
         photon.flux *= photon_batch_->scaleOf(chunk);
         deposits.push_back(photon);
       }
     }
-    replaceCaustics(deposits);
+    return deposits;
   }
 
   /// The photons of the latest batch, under a kernel that shrinks from batch to batch (Knaus & Zwicker 2011, eq. 15):
   /// the mean over batches then converges although each batch is blurred.
-  void replaceCaustics(const std::vector<GridPhoton>& deposits) {
-    if (deposits.empty()) return;
-    if (first_radius_ == 0.0F) {
-      first_radius_ = chooseGatherRadius(deposits, kGatherPhotons);
-      radius_squared_ = static_cast<double>(first_radius_) * first_radius_;
+  void shrinkKernel(const std::vector<GridPhoton>& deposits) {
+    if (radius_squared_ == 0.0) {
+      const double radius = chooseGatherRadius(deposits, kGatherPhotons);
+      radius_squared_ = radius * radius;
     } else {
       const double k = static_cast<double>(batches_done_ - 1);
       radius_squared_ *= (k + kRadiusAlpha) / (k + 1.0);
     }
+  }
+  void replaceCaustics(const std::vector<GridPhoton>& deposits) {
     const auto radius = static_cast<float>(std::sqrt(radius_squared_));
     caustics_ = radius > 0.0F ? PhotonGrid(deposits, radius) : PhotonGrid();
   }
@@ -273,6 +294,64 @@ class ReferenceRender {
     addTo(splat.is_caustic ? film_.caustic : film_.indirect, splat.radiance);
     addTo(film_.irradiance, splat.irradiance);
     if (splat.is_caustic) addTo(film_.irradiance_caustic, splat.irradiance);
+  }
+
+  bool keepsCheckpoint() const { return !settings_.checkpoint.path.empty(); }
+
+  /// What must be the same where a render goes on. Budgets are not among it: a finished render can be given more.
+  CheckpointFacts describeIdentity() const {
+    CheckpointFacts facts{{"version", std::string(version())},
+                          {"scene", fmt::format("{:016x} by its content", fingerprintScene(world_.scene.scene()))},
+                          {"camera", fmt::format("{:016x} by its content", fingerprintCamera(camera_))},
+                          {"size", fmt::format("{}x{}", settings_.width, settings_.height)},
+                          {"seed", std::to_string(settings_.seed)},
+                          {"list of layers", fmt::format("{}", fmt::join(settings_.layers, ","))},
+                          {"list of estimated errors", fmt::format("{}", fmt::join(layersWithError(settings_), ","))}};
+    for (const ParamSpec& spec : settings_.params.specs())
+      facts.emplace_back("parameter " + spec.name, settings_.params.toText(spec.name));
+    return facts;
+  }
+
+  /// All that the next step depends on, to a writer or from a reader. Photons that are gathered are traced again.
+  template <class State>
+  void visitState(State& state) {
+    state.value(batch_photons_);
+    film_.visitPlanes([&](FilmPlane& plane) { state.values(plane.values()); });
+    errors_.visitState(state);
+    state.values(std::span(row_done_));
+    for (Ledger& ledger : ledgers_) ledger.visitState(state);
+    for (std::uint64_t* count : {&samples_done_, &photons_done_, &batches_done_, &samples_at_photons_, &path_rays_,
+                                 &light_rays_, &not_finite_})
+      state.value(*count);
+    for (double* number : {&radius_squared_, &path_seconds_, &light_seconds_}) state.value(*number);
+  }
+
+  /// A full disk does not end a render: what is in memory is worth more than its copy.
+  void save(RenderResult& result) {
+    result.checkpoint_failure.clear();
+    StateWriter state;
+    visitState(state);
+    try {
+      writeCheckpoint(settings_.checkpoint.path, describeIdentity(), state.bytes());
+    } catch (const ResourceError& error) {
+      result.checkpoint_failure = error.what();
+    }
+  }
+
+  /// @throws InputError
+  void resume(RenderResult& result) {
+    const std::vector<std::byte> bytes = readCheckpoint(settings_.checkpoint.path, describeIdentity());
+    StateReader state(bytes);
+    visitState(state);
+    if (!state.isDone())
+      throw InputError(
+          fmt::format("{}: holds other sums than this render has; delete it to begin anew", settings_.checkpoint.path));
+    if (light_tracer_) makePhotonBatch(batch_photons_);
+    if (gather_ && batches_done_ > 0 && photon_batch_->trace(batches_done_ - 1, [&] { return stopped(); }))
+      replaceCaustics(collectDeposits());
+    if (settings_.target_error > 0.0) error_ = errors_.worst();
+    result.notes.push_back(fmt::format("went on from {} with {} samples, {:.1f} M photons", settings_.checkpoint.path,
+                                       samples_done_, static_cast<double>(photons_done_) * 1e-6));
   }
 
   void shareLedgers() {
@@ -304,7 +383,7 @@ class ReferenceRender {
   /// From sums to pictures.
   void develop(RenderResult& result) {
     // Of a pass that was cut short some rows hold more than others: no batch.
-    if (!errors_.empty() && partial_rows_.empty()) errors_.closeEyeBatch(samples_done_);
+    if (!errors_.empty() && isBetweenPasses()) errors_.closeEyeBatch(samples_done_);
     for (const std::string& name : settings_.layers) {
       const auto geometry =
           std::find_if(geometry_.begin(), geometry_.end(), [&](const Layer& l) { return l.name == name; });
@@ -323,7 +402,7 @@ class ReferenceRender {
     const double by_batches = batches_done_ > 0 ? 1.0 / static_cast<double>(batches_done_) : 0.0;
     for (std::size_t pixel = 0; pixel < image.pixels.size() / 3; ++pixel) {
       const std::size_t row = pixel / static_cast<std::size_t>(settings_.width);
-      const std::uint64_t samples = samples_done_ + (!partial_rows_.empty() && partial_rows_[row] ? 1 : 0);
+      const std::uint64_t samples = samples_done_ + row_done_[row];
       const double by_samples = samples > 0 ? 1.0 / static_cast<double>(samples) : 0.0;
       vec3 sum(0.0F);
       for (const LayerPlanes& part : parts) {
@@ -395,6 +474,7 @@ class ReferenceRender {
   const RenderSettings& settings_;
   ProgressSink* progress_;
   const StopToken* stop_;
+  Camera camera_;
   LayerNeeds needs_;
   ReferenceWorld world_;
   Film film_;
@@ -405,16 +485,15 @@ class ReferenceRender {
   std::vector<Ledger> ledgers_;
   std::vector<Layer> geometry_;
   std::vector<StageTime> stages_;
-  std::vector<bool> partial_rows_;
+  std::vector<std::uint8_t> row_done_;  ///< 1: holds the sample that is being taken already
   bool gather_ = false;
   PhotonGrid caustics_;
-  float first_radius_ = 0.0F;
   double radius_squared_ = 0.0;
   std::uint64_t samples_budget_ = 0, photons_budget_ = 0, samples_done_ = 0, photons_done_ = 0, batches_done_ = 0;
   std::uint64_t path_rays_ = 0, light_rays_ = 0, not_finite_ = 0;
   ErrorEstimate::Worst error_;  ///< at the last closed batches; only with a target
   std::uint64_t error_batch_passes_ = 1, samples_at_photons_ = 0;
-  bool open_ended_ = false;  ///< budgets that were not given are unlimited
+  std::uint32_t batch_photons_ = 0;  ///< asked of a batch
   double path_seconds_ = 0, light_seconds_ = 0;
 };
 
