@@ -1,8 +1,10 @@
 #include "closed_form/drop.h"
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
 
 #include "core/spectrum.h"
 
