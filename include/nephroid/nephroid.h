@@ -85,6 +85,13 @@ struct RenderRequest {
   std::uint64_t photons = 0;                  ///< emitted, over all lights and bands
   std::uint64_t samples = 0;                  ///< per pixel
   double seconds = 0;                         ///< ends a progressive render; the picture then varies between runs
+  /// Of progressive techniques: ends the render when relMSE, estimated from the standard errors of the layers asked
+  /// for, is down to this in each of them (docs/cli.md, "Errors").
+  double target_error = 0;
+  /// Of progressive techniques: a file that the render is kept in while it runs, and taken up from if it exists. What
+  /// cannot be written ends nothing; it is among `Picture::notes()`.
+  std::string checkpoint;
+  double checkpoint_interval_s = 60;  ///< between two writings
   std::uint64_t seed = 0;
   int threads = 0;  ///< 0: all cores; the picture does not depend on it
   /// What computes: "auto" (the best Vulkan device where the technique needs one, else the CPU), "cpu" (no Vulkan at
@@ -145,7 +152,8 @@ class Picture {
 };
 
 /// Renders `scene`, after adding what it lacks (see `Scene::warnings`).
-/// @throws UsageError for what is unknown or out of range, DeviceError where there is no device for it, ResourceError
+/// @throws UsageError for what is unknown or out of range, InputError for a checkpoint of another render, DeviceError
+/// where there is no device for it, ResourceError
 ///         when memory is short, InterruptedError if stopped before there was anything to keep
 Picture render(Scene& scene, const RenderRequest& request = {});
 

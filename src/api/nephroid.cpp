@@ -63,11 +63,15 @@ RenderSettings makeSettings(const RenderRequest& request, const Technique& techn
   settings.photons = request.photons;
   settings.samples = request.samples;
   settings.seconds = request.seconds;
+  settings.target_error = request.target_error;
+  settings.checkpoint = {request.checkpoint, request.checkpoint_interval_s};
   settings.seed = request.seed;
   settings.threads = request.threads;
   settings.device = request.device;
   settings.params = ParamSet(technique.params);
   for (const auto& [key, value] : request.parameters) settings.params.set(key, value);
+  if (!(request.target_error >= 0.0)) throw UsageError("target_error is below 0; 0 is none");
+  checkProgressive(technique, settings);
   return settings;
 }
 
@@ -166,6 +170,7 @@ Picture render(Scene& scene, const RenderRequest& request) {
   StopToken stop;
   CallbackSink sink(request, stop);
   RenderResult result = technique.render(impl.data, camera, settings, &sink, &stop);
+  if (!result.checkpoint_failure.empty()) result.notes.push_back(result.checkpoint_failure);
   result.image.metadata.emplace("scene", impl.data.name);
   result.image.metadata.emplace("version", version());
   return SceneAccess::makePicture(std::move(result));

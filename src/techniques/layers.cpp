@@ -23,6 +23,17 @@ constexpr LayerInfo kLayers[] = {
     {"specular_caustic", 3, false, kRadianceUnit, "the part of specular that shows caustics (L S+ D S+ E)"},
     {"irradiance", 3, false, kIrradianceUnit, "light arriving at the first diffuse surface"},
     {"irradiance_caustic", 3, false, kIrradianceUnit, "the part of irradiance that is caustic"},
+    {"beauty_error", 3, false, kRadianceUnit, "standard error of beauty, by the spread of its batches"},
+    {"direct_error", 3, false, kRadianceUnit, "standard error of direct"},
+    {"caustic_error", 3, false, kRadianceUnit, "standard error of caustic"},
+    {"specular_error", 3, false, kRadianceUnit, "standard error of specular"},
+    {"indirect_error", 3, false, kRadianceUnit, "standard error of indirect"},
+    {"emission_error", 3, false, kRadianceUnit, "standard error of emission"},
+    {"specular_caustic_error", 3, false, kRadianceUnit, "standard error of specular_caustic"},
+    {"irradiance_error", 3, false, kIrradianceUnit, "standard error of irradiance"},
+    {"irradiance_caustic_error", 3, false, kIrradianceUnit, "standard error of irradiance_caustic"},
+    {"specular_caustic_bias", 3, false, kRadianceUnit,
+     "what the width of the kernel adds to specular_caustic (or takes, where negative), estimated from two widths"},
     {"albedo", 3, false, "", "base colour of the first surface"},
     {"normal", 3, false, "", "shading normal of the first surface, world space"},
     {"position", 3, false, "m", "place on the first surface, world space"},
@@ -33,6 +44,11 @@ constexpr LayerInfo kLayers[] = {
 }  // namespace
 
 std::span<const LayerInfo> layerInfos() { return kLayers; }
+
+std::string_view erringLayer(std::string_view name) {
+  constexpr std::string_view kSuffix = "_error";
+  return name.ends_with(kSuffix) ? name.substr(0, name.size() - kSuffix.size()) : std::string_view();
+}
 
 const LayerInfo& findLayerInfo(std::string_view name) {
   std::vector<std::string> names;

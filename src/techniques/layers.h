@@ -22,6 +22,9 @@ std::span<const LayerInfo> layerInfos();
 /// @throws UsageError with the names there are
 const LayerInfo& findLayerInfo(std::string_view name);
 
+/// "caustic" for "caustic_error": whose standard error a layer shows; "" for all other layers.
+std::string_view erringLayer(std::string_view name);
+
 /// "beauty,caustic" → names, checked, in file order, without repetition.
 /// @throws UsageError
 std::vector<std::string> parseLayerList(std::string_view comma_separated);

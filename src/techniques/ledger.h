@@ -48,6 +48,15 @@ struct Ledger {
   /// (emitted − everything else) / emitted of the worst channel; closes when |residual| <= 1e-5.
   double residual() const;
   dvec3 rouletteStandardError() const;
+
+  /// Visits all sums, with `value(number)`, in a fixed order; not the light's name.
+  template <class State>
+  void visitState(State& state) {
+    state.value(emitted_count);
+    for (dvec3* sum : {&emitted, &missed, &blocked, &absorbed, &escaped, &deposited, &roulette, &roulette_squared})
+      state.value(*sum);
+    for (dvec3& sum : lost) state.value(sum);
+  }
 };
 
 /// The table that `render --verbose` prints, and JSON.

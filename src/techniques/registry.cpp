@@ -64,4 +64,13 @@ void checkDevice(const Technique& technique, std::string_view device) {
                         device, technique.name));
 }
 
+void checkProgressive(const Technique& technique, const RenderSettings& settings) {
+  if (technique.is_progressive) return;
+  const auto refuse = [&](std::string_view option, std::string_view reason) {
+    throw UsageError(fmt::format("{}: technique {} {}; use --technique reference", option, technique.name, reason));
+  };
+  if (settings.target_error > 0.0) refuse("--target-error", "does not estimate its error");
+  if (!settings.checkpoint.path.empty()) refuse("--checkpoint", "does not go on where it left off");
+}
+
 }  // namespace nephroid

@@ -19,6 +19,12 @@ namespace nephroid {
 class RealtimeTechnique;
 struct RealtimeInputs;
 
+/// Where a progressive render is kept while it runs, and taken up again.
+struct CheckpointSettings {
+  std::string path;        ///< empty: nowhere
+  double interval_s = 60;  ///< between two writings
+};
+
 /// What to render. A budget of 0 means "not given"; the first budget to be spent ends a progressive render.
 struct RenderSettings {
   int width = 1024, height = 768;
@@ -26,6 +32,8 @@ struct RenderSettings {
   std::uint64_t photons = 0;                  ///< emitted, all lights and bands
   std::uint64_t samples = 0;                  ///< per pixel
   double seconds = 0;
+  double target_error = 0;        ///< relMSE of the worst layer by its own estimate; only of progressive techniques
+  CheckpointSettings checkpoint;  ///< only of progressive techniques
   std::uint64_t seed = 0;
   int threads = 0;              ///< 0: all cores
   std::string device = "auto";  ///< "auto", "cpu" or the number of a Vulkan device
@@ -54,6 +62,7 @@ struct RenderResult {
   std::vector<Ledger> ledgers;     ///< one per light that photons were emitted from
   std::vector<std::string> notes;  ///< what a layer does not contain and why
   bool interrupted = false;        ///< stopped early; the picture is what was reached
+  std::string checkpoint_failure;  ///< why the latest checkpoint could not be written; empty: it could
 };
 
 /// One technique: an entry of the explicit list in registry.cpp.
@@ -62,6 +71,8 @@ struct Technique {
   std::string text;
   std::string source;
   bool on_vulkan = false;  ///< needs a Vulkan device; else computes on the CPU alone
+  bool is_progressive =
+      false;  ///< converges, and knows how far it is: takes RenderSettings::target_error and checkpoint
   std::vector<ParamSpec> params;
   /// Of a real-time technique: draws the caustic of a frame. Null: it has none.
   /// @return  null if the scene has no caustic that it could draw
@@ -71,7 +82,8 @@ struct Technique {
   /// What became of the photons of what make_realtime made. Null: nothing is known of them.
   std::vector<Ledger> (*account)(RealtimeTechnique& technique) = nullptr;
   /// Pictures of the same scene, settings and seed are identical for any thread count unless a time budget ends them.
-  /// @throws UsageError, DeviceError, ResourceError, InterruptedError (stopped before there was anything to keep)
+  /// @throws UsageError, InputError (a checkpoint), DeviceError, ResourceError, InterruptedError (stopped before there
+  /// was anything to keep)
   RenderResult (*render)(const SceneData& scene, const Camera& camera, const RenderSettings& settings,
                          ProgressSink* progress, const StopToken* stop);
 };
@@ -91,5 +103,7 @@ bool takesDevice(const Technique& technique, std::string_view device);
 /// Only its form: whether there is such a device is known once Vulkan is asked.
 /// @throws UsageError if the technique does not take it, or nothing is called so
 void checkDevice(const Technique& technique, std::string_view device);
+/// @throws UsageError if settings ask for what only a progressive technique can do, and it is none
+void checkProgressive(const Technique& technique, const RenderSettings& settings);
 
 }  // namespace nephroid

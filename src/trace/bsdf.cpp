@@ -156,10 +156,14 @@ std::optional<BsdfSample> Bsdf::sampleBase(vec2 u) const {
   return s;
 }
 
+Bsdf::Mirroring Bsdf::mirroring() const {
+  const float r = luminance(reflectance_), sum = r + luminance(transmittance_);
+  return {reflectance_, sum > 0.0F ? r / sum : 0.0F};
+}
+
 std::optional<BsdfSample> Bsdf::sampleSmooth(float u_lobe, Transport transport) const {
-  const float r = luminance(reflectance_), t = luminance(transmittance_);
-  if (r + t <= 0.0F) return std::nullopt;
-  const float p_reflect = r / (r + t);
+  if (luminance(reflectance_) + luminance(transmittance_) <= 0.0F) return std::nullopt;
+  const float p_reflect = mirroring().probability;
   BsdfSample s;
   s.delta = true;
   if (u_lobe < p_reflect) {

@@ -55,6 +55,15 @@ class Bsdf {
   /// True if the class has something to evaluate for a given direction (not only deltas).
   bool isEvaluable(EventClass c) const { return c == EventClass::kDiffuse ? hasDiffuse() : hasSpecular() && !smooth_; }
 
+  /// Nothing but a smooth interface: what it does is mirror or transmit.
+  bool isClear() const { return smooth_ && !hasDiffuse(); }
+  /// How a smooth interface mirrors.
+  struct Mirroring {
+    vec3 reflectance;
+    float probability;  ///< with which `sample` mirrors rather than transmits
+  };
+  Mirroring mirroring() const;
+
   BsdfValue evaluate(EventClass c, vec3 wi, Transport transport) const;
   /// @param u two numbers for the direction, @param u_lobe one for the choice of lobe, all in [0, 1)
   /// @return nothing if the sample falls on the wrong side of the true surface or below the microfacets

@@ -7,23 +7,19 @@
 #include "core/optics/absorption.shared.h"
 #include "core/optics/dispersion.shared.h"
 #include "core/sampling/sampler.h"
-#include "core/spectrum.h"
+#include "trace/hero_wavelengths.h"
 #include "trace/interior.h"
 #include "trace/surface_material.h"
 #include "trace/trace_scene.h"
 
 namespace nephroid {
 
-/// How a path's wavelength is drawn when it first meets a dispersive interface.
-struct SpectralMode {
-  std::vector<Band> bands;  ///< empty: continuous
-};
-
 /// What a path is besides its ray.
 struct PathState {
   Ray ray;
   InteriorList interior;
-  float wavelength_nm = 0.0F;  ///< 0 until something dispersive was met
+  float wavelength_nm = 0.0F;  ///< of the hero; 0 until something dispersive was met
+  HeroWavelengths hero;
 };
 
 /// Index of a medium at the path's wavelength; vacuum for null.
@@ -79,23 +75,5 @@ class Walker {
   const TraceScene& scene_;
   const MaterialTable& materials_;
 };
-
-/// Draws the path's wavelength if the interface is dispersive and it has none yet. @return the weight on its flux
-inline vec3 drawWavelength(PathState& state, const Interface& boundary, const SpectralMode& mode, Sampler& sampler) {
-  if (state.wavelength_nm != 0.0F) return vec3(1.0F);
-  const bool dispersive =
-      (boundary.from && boundary.from->dispersion > 0.0F) || (boundary.to && boundary.to->dispersion > 0.0F);
-  if (!dispersive) return vec3(1.0F);
-  const float u = sampler.next1D();
-  if (mode.bands.empty()) {
-    const Band band = sampleWavelength(u);
-    state.wavelength_nm = band.wavelength_nm;
-    return band.weight;
-  }
-  const auto count = static_cast<float>(mode.bands.size());
-  const Band& band = mode.bands[std::min(static_cast<std::size_t>(u * count), mode.bands.size() - 1)];
-  state.wavelength_nm = band.wavelength_nm;
-  return band.weight * count;
-}
 
 }  // namespace nephroid

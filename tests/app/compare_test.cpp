@@ -262,5 +262,21 @@ TEST(Compare, JsonIsValidWhereFiguresAreNotFinite) {
   EXPECT_THAT(json["reference"].get<std::string>(), HasSubstr("b"));
 }
 
+TEST(Compare, PageShowsWhatPngFilesSayOfThemselves) {
+  const TempFolder folder;
+  const auto draw = [&](const char* file, const char* seed) {
+    return runNephroid({"render", "builtin:ring", "-o", folder.file(file), "--size", "16x12", "--samples", "1",
+                        "--photons", "500", "--seed", seed})
+        .exit_code;
+  };
+  ASSERT_EQ(draw("a.png", "41"), 0);
+  ASSERT_EQ(draw("b.png", "43"), 0);
+  const ProcessResult result =
+      runNephroid({"compare", folder.file("a.png"), folder.file("b.png"), "--html", folder.file("page.html")});
+  ASSERT_EQ(result.exit_code, 0) << result.err;
+  const std::string page = readText(folder.file("page.html"));
+  for (const char* text : {"builtin:ring", ">41<", ">43<"}) EXPECT_THAT(page, HasSubstr(text));
+}
+
 }  // namespace
 }  // namespace nephroid::test

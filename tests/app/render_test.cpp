@@ -132,6 +132,30 @@ TEST(Render, BadStateFileIsBadInputThatNamesTheKey) {
   }
 }
 
+TEST(Render, TargetErrorEndsTheRenderAndErrorsAreLayers) {
+  const TempFolder folder;
+  const ProcessResult result =
+      runNephroid({"render", "builtin:slab", "-o", folder.file("a.exr"), "--size", "16x12", "--target-error", "0.05",
+                   "--photons", "200k", "--aov", "direct,direct_error,specular_caustic_bias"});
+  ASSERT_EQ(result.exit_code, 0) << result.err;
+  const LayeredImage image = readExr(folder.file("a.exr"));
+  ASSERT_NE(image.find("direct_error"), nullptr);
+  EXPECT_NE(image.find("specular_caustic_bias"), nullptr);
+  EXPECT_LE(std::stod(image.metadata.at("estimated_relmse.direct")), 0.05);
+  EXPECT_GT(std::stod(image.metadata.at("estimated_relmse.direct")), 0.0);
+}
+
+TEST(Render, TargetErrorOfATechniqueThatKnowsNoneIsWrongUsage) {
+  for (const std::string& technique : {std::string("reference"), std::string("caustic-map")}) {
+    if (runNephroid({"techniques", technique}).exit_code != 0) continue;  // built without Vulkan
+    const TempFolder folder;
+    const ProcessResult result = runNephroid(
+        smallRender(folder.file("a.exr"), {"--technique", technique, "--target-error", "0.1", "--aov", "normal"}));
+    EXPECT_EQ(result.exit_code, 2) << technique;
+    EXPECT_EQ(countLines(result.err), 1) << result.err;
+  }
+}
+
 TEST(Render, MissingAndBrokenScenesAreBadInput) {
   const TempFolder folder;
   writeText(folder.file("broken.glb"), "glTF but not really");
@@ -197,6 +221,96 @@ TEST(Interrupt, KeepsThePictureAsFarAsItCame) {
     const std::filesystem::directory_iterator files(folder.path());
     EXPECT_EQ(std::distance(files, std::filesystem::directory_iterator()), 1);
   }
+}
+
+/// A render of some seconds, kept twice a second and oftener.
+std::vector<std::string> keptRender(const std::string& output, const std::string& checkpoint) {
+  return {"render",
+          "builtin:sphere",
+          "-o",
+          output,
+          "--size",
+          "96x72",
+          "--samples",
+          "48",
+          "--photons",
+          "1M",
+          "--aov",
+          "beauty,specular_caustic",
+          "--set",
+          "max-bounces=12",
+          "--checkpoint",
+          checkpoint,
+          "--checkpoint-every",
+          "0.1"};
+}
+
+/// Waits until the file is there and newer than it was, or the time is over in which it should be.
+void waitForNewer(const std::string& file, std::filesystem::file_time_type than) {
+  std::error_code missing;
+  for (int i = 0; i < 6000; ++i) {
+    const auto written = std::filesystem::last_write_time(file, missing);
+    if (!missing && written > than) return;
+    std::this_thread::sleep_for(std::chrono::milliseconds(10));
+  }
+}
+
+TEST(Checkpoint, ARenderThatWasKilledGoesOnToTheSamePixels) {
+  const TempFolder folder;
+  const std::string checkpoint = folder.file("c.checkpoint");
+  const ProcessResult whole = runNephroid(keptRender(folder.file("whole.exr"), folder.file("whole.checkpoint")));
+  ASSERT_EQ(whole.exit_code, 0) << whole.err;
+  std::filesystem::file_time_type written = std::filesystem::file_time_type::min();
+  for (int i = 0; i < 2; ++i) {
+    const ProcessResult killed =
+        runNephroid(keptRender(folder.file("a.exr"), checkpoint), {.while_running = [&](pid_t process) {
+                      waitForNewer(checkpoint, written);
+                      kill(process, SIGKILL);
+                    }});
+    written = std::filesystem::last_write_time(checkpoint);
+    ASSERT_EQ(killed.signal, SIGKILL) << killed.err;
+    ASSERT_FALSE(std::filesystem::exists(folder.file("a.exr")));
+  }
+  std::vector<std::string> arguments = keptRender(folder.file("a.exr"), checkpoint);
+  arguments.emplace_back("--verbose");
+  const ProcessResult resumed = runNephroid(arguments);
+  EXPECT_EQ(resumed.exit_code, 0) << resumed.err;
+  EXPECT_THAT(resumed.err, HasSubstr("went on from " + checkpoint));
+  EXPECT_TRUE(readText(folder.file("a.exr")) == readText(folder.file("whole.exr")));
+}
+
+TEST(Checkpoint, OfAnotherRenderIsBadInput) {
+  const TempFolder folder;
+  const std::vector<std::string> kept{"--checkpoint", folder.file("c")};
+  ASSERT_EQ(runNephroid(smallRender(folder.file("a.png"), kept)).exit_code, 0);
+  const ProcessResult other =
+      runNephroid(smallRender(folder.file("b.png"), {"--checkpoint", folder.file("c"), "--seed", "3"}));
+  EXPECT_EQ(other.exit_code, 3);
+  EXPECT_THAT(other.err, HasSubstr("its seed is 0, here it is 3"));
+  EXPECT_EQ(countLines(other.err), 1) << other.err;
+  EXPECT_FALSE(std::filesystem::exists(folder.file("b.png")));
+}
+
+TEST(Checkpoint, FullDiskIsExitCodeFiveAndLosesNoPicture) {
+  // Files may have 16 blocks of 1024 bytes: enough for a picture of 32 x 24, too few for its sums.
+  const TempFolder folder;
+  std::string command = "trap '' XFSZ; ulimit -f 16; exec " NEPHROID_PROGRAM;
+  for (const std::string& argument : smallRender(folder.file("a.png"), {"--checkpoint", folder.file("c")}))
+    command += " '" + argument + "'";
+  const ProcessResult result = runProcess({"bash", "-c", command});
+  EXPECT_EQ(result.exit_code, 5) << result.err;
+  EXPECT_THAT(result.err, HasSubstr("error: " + folder.file("c")));
+  EXPECT_TRUE(std::filesystem::exists(folder.file("a.png")));
+  EXPECT_FALSE(std::filesystem::exists(folder.file("c")));
+}
+
+TEST(Checkpoint, OfFramesIsOneFileEach) {
+  const TempFolder folder;
+  ASSERT_EQ(runNephroid(smallRender(folder.file("a.png"), {"--frames", "1..2", "--checkpoint", folder.file("c.ckpt")}))
+                .exit_code,
+            0);
+  EXPECT_TRUE(std::filesystem::exists(folder.file("c_0001.ckpt")));
+  EXPECT_TRUE(std::filesystem::exists(folder.file("c_0002.ckpt")));
 }
 
 TEST(Info, DescribesTheSceneOnStdout) {

@@ -167,7 +167,8 @@ TEST(Completion, OffersCommandsOptionsChoicesAndScenes) {
   EXPECT_THAT(complete("nephroid render --tech"), ::testing::ElementsAre("--technique"));
   EXPECT_THAT(complete("nephroid render --technique "), ::testing::Contains("reference"));
   EXPECT_THAT(complete("nephroid render --tonemap f"), ::testing::ElementsAre("filmic"));
-  EXPECT_THAT(complete("nephroid render --aov beauty,caus"), ::testing::ElementsAre("beauty,caustic"));
+  EXPECT_THAT(complete("nephroid render --aov beauty,caus"),
+              ::testing::ElementsAre("beauty,caustic", "beauty,caustic_error"));
   EXPECT_THAT(complete("nephroid scenes co"), ::testing::ElementsAre("cognac", "coffee"));
 }
 

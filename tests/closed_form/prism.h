@@ -43,12 +43,12 @@ inline double prismMinimumDeviation(double apex, double ior) {
 /// A beam of 1 mm on the axis of a prism of 40 mm, `height` above the floor. The sun stands at −X. With the prism
 /// turned by t from apex up, its lit face looks up by A/2 + t short of −X's opposite, that is, light meets it at t +
 /// A/2 − elevation.
-inline SceneData makePrismScene(const PrismCase& c, double height) {
+inline SceneData makePrismScene(const PrismCase& c, double height, double floor_size = 4.0) {
   const double turn = c.incidence_deg - 0.5 * c.apex_deg + c.sun_elevation_deg;
   return loadScene(
       fmt::format("builtin:prism?light=sun&irradiance=1&sun-azimuth=-90&sun-elevation={}&apex={}&ior={}&abbe={}&"
-                  "turn={}&height={}&slit=0.001&floor-size=4",
-                  c.sun_elevation_deg, c.apex_deg, c.ior, c.abbe, turn, height));
+                  "turn={}&height={}&slit=0.001&floor-size={}",
+                  c.sun_elevation_deg, c.apex_deg, c.ior, c.abbe, turn, height, floor_size));
 }
 
 /// The strip of floor on which the beam of a given elevation lands, give or take some degrees.

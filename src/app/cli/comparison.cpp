@@ -28,7 +28,7 @@ PictureFile readPicture(const std::string& path) {
     return {readExr(path), false};
   const DecodedImage decoded = decodeImage(bytes, path);
   Image image = toLinear(decoded);
-  LayeredImage layered{.width = image.width, .height = image.height};
+  LayeredImage layered{.width = image.width, .height = image.height, .metadata = readPngTexts(bytes)};
   layered.layers.push_back({"beauty", std::move(image)});
   return {std::move(layered), std::holds_alternative<ByteImage>(decoded)};
 }

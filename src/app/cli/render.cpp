@@ -41,6 +41,8 @@ struct RenderOptions {
   std::string camera, output, frames;
   std::string aov = "beauty";
   float fps = 24;
+  double target_error = 0;
+  CheckpointSettings checkpoint;
   bool stats = false, verbose = false, json = false;
 };
 
@@ -165,8 +167,12 @@ ExitCode runRender(RenderOptions options) {
   RenderSettings settings = makeSettings(options.technique);
   settings.ledgers = options.verbose || options.json;
   settings.layers = parseLayerList(options.aov);
+  settings.target_error = options.target_error;
+  settings.checkpoint = options.checkpoint;
+  checkProgressive(findTechnique(options.technique.name), settings);
   const std::optional<FrameRange> frames = parseFrames(options.frames);
   checkPicture(frames ? frameName(options.output, frames->first) : options.output, settings.layers, options.picture);
+  if (!options.checkpoint.path.empty()) checkWritable(options.checkpoint.path);
 
   checkMemory(estimateMemory(settings), readAvailableMemory());
 
@@ -177,11 +183,15 @@ ExitCode runRender(RenderOptions options) {
     const std::string output = frames ? frameName(options.output, frame) : options.output;
     const float time_s = options.scene.time + (frames ? static_cast<float>(frame) / options.fps : 0.0F);
     const std::string title = frames ? fmt::format("frame {}/{}", frame, range.last) : "";
+    if (frames && !options.checkpoint.path.empty())
+      settings.checkpoint.path = frameName(options.checkpoint.path, frame);
     const Outcome outcome = renderPicture(options, settings, output, time_s, title);
     interrupted = outcome.result.interrupted || stopToken().requested();
     if (options.verbose) printVerbose(outcome);
     for (const std::string& file : outcome.files) writeStderr("wrote " + file);
     if (options.json) report.push_back(toJson(outcome));
+    // The picture is safe by now; that it cannot be taken up again must not pass for success.
+    if (!outcome.result.checkpoint_failure.empty()) throw ResourceError(outcome.result.checkpoint_failure);
   }
   if (options.json) writeStdout((frames ? report : report.front()).dump(2) + "\n");
   if (interrupted) writeStderr("interrupted: the last picture holds what was reached");
@@ -209,6 +219,25 @@ void addOutputOptions(CLI::App& app, RenderOptions& options) {
   endGroup(app);
 }
 
+void addConvergenceOptions(CLI::App& app, RenderOptions& options) {
+  beginGroup(app, "Budget");
+  addValue(
+      app, "--target-error", options.target_error, "X",
+      {"Ends the render when relMSE, estimated from the standard errors of the layers asked for, is down to this in "
+       "each of them; docs/cli.md explains it. Other budgets that are given still end it.",
+       "none", "1e-9 to 10", ""},
+      checkNumber(1e-9, 10));
+  addValue(
+      app, "--checkpoint", options.checkpoint.path, "FILE",
+      {"Keeps the render in FILE while it runs and goes on from there if FILE exists; a finished one can be given a "
+       "larger budget. With --frames one file for each.",
+       "none", "", ""});
+  addValue(app, "--checkpoint-every", options.checkpoint.interval_s, "S",
+           {"Time between two writings of --checkpoint: what a crash can cost.", "60", "0.1 to 1e6", "s"},
+           checkNumber(0.1, 1e6));
+  endGroup(app);
+}
+
 void addAnimationOptions(CLI::App& app, RenderOptions& options) {
   beginGroup(app, "Animation");
   addValue(app, "--frames", options.frames, "A..B",
@@ -227,6 +256,7 @@ Command addRenderCommand(CLI::App& root) {
   addCameraOption(*app, options->camera);
   addOutputOptions(*app, *options);
   addTechniqueOptions(*app, options->technique, options->technique.name, describeDefaults(options->technique));
+  addConvergenceOptions(*app, *options);
   addAnimationOptions(*app, *options);
   return {app, [app, options] {
             if (!options->scene.state.empty()) applyStateFile(*app, options->scene.state);

@@ -3,6 +3,7 @@
 
 #include <cstddef>
 #include <filesystem>
+#include <map>
 #include <span>
 #include <string>
 
@@ -38,6 +39,11 @@ LayeredImage readExr(const std::filesystem::path& path);
 /// attributes. Atomic.
 /// @throws ResourceError
 void writeExr(const std::filesystem::path& path, const LayeredImage& image, bool half = false);
+
+/// What a PNG says of itself: keyword and text of its chunks tEXt and iTXt, as UTF-8, the first of each keyword.
+/// Compressed text is left out, and all that follows damage. Never more than the file's own size.
+/// @return nothing for any other format
+std::map<std::string, std::string> readPngTexts(std::span<const std::byte> bytes);
 
 /// 8-bit RGB PNG of display-referred values in [0, 1] that are already sRGB-coded. Metadata as tEXt chunks.
 /// @throws ResourceError

@@ -2,10 +2,15 @@
 
 #include <algorithm>
 
+#include "techniques/layers.h"
+
 namespace nephroid {
 
 LayerNeeds::LayerNeeds(const std::vector<std::string>& layers) {
-  const auto has = [&](std::string_view name) { return std::find(layers.begin(), layers.end(), name) != layers.end(); };
+  const auto has = [&](std::string_view name) {
+    return std::any_of(layers.begin(), layers.end(),
+                       [&](const std::string& layer) { return layer == name || erringLayer(layer) == name; });
+  };
   beauty = has("beauty");
   emission = beauty || has("emission");
   direct = beauty || has("direct");
@@ -13,6 +18,7 @@ LayerNeeds::LayerNeeds(const std::vector<std::string>& layers) {
   specular = beauty || has("specular");
   indirect = beauty || has("indirect");
   specular_caustic = has("specular_caustic");
+  specular_caustic_bias = has("specular_caustic_bias");
   irradiance = has("irradiance");
   irradiance_caustic = has("irradiance_caustic");
   geometry = has("albedo") || has("normal") || has("position") || has("depth") || has("id");
@@ -30,10 +36,32 @@ Film::Film(int w, int h, const LayerNeeds& needs) : width(w), height(h) {
   activate(indirect_from_eye, needs.indirect);
   activate(indirect, needs.indirect);
   activate(specular_caustic, needs.specular_caustic);
+  activate(specular_caustic_bias, needs.specular_caustic_bias);
   activate(irradiance_from_eye, needs.irradiance);
   activate(irradiance, needs.irradiance);
   activate(irradiance_caustic_from_eye, needs.irradiance_caustic);
   activate(irradiance_caustic, needs.irradiance_caustic);
+}
+
+std::vector<LayerPlanes> planesOf(const Film& film, std::string_view layer) {
+  struct Entry {
+    std::string_view layer;
+    LayerPlanes planes;
+  };
+  const Entry entries[] = {{"direct", {&film.direct, nullptr}},
+                           {"caustic", {&film.caustic_from_eye, &film.caustic}},
+                           {"specular", {&film.specular, nullptr}},
+                           {"indirect", {&film.indirect_from_eye, &film.indirect}},
+                           {"emission", {&film.emission, nullptr}},
+                           {"specular_caustic", {&film.specular_caustic, nullptr}},
+                           {"specular_caustic_bias", {&film.specular_caustic_bias, nullptr}},
+                           {"irradiance", {&film.irradiance_from_eye, &film.irradiance}},
+                           {"irradiance_caustic", {&film.irradiance_caustic_from_eye, &film.irradiance_caustic}}};
+  std::vector<LayerPlanes> planes;
+  for (const Entry& entry : entries)
+    if (entry.layer == layer || (layer == "beauty" && findLayerInfo(entry.layer).summed))
+      planes.push_back(entry.planes);
+  return planes;
 }
 
 }  // namespace nephroid

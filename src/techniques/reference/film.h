@@ -2,7 +2,9 @@
 #pragma once
 
 #include <cstdint>
+#include <span>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "core/math.h"
@@ -21,24 +23,31 @@ class FilmPlane {
     p[0] += value.x, p[1] += value.y, p[2] += value.z;
   }
   dvec3 at(std::size_t pixel) const { return {values_[3 * pixel], values_[3 * pixel + 1], values_[3 * pixel + 2]}; }
+  /// All of it, RGB by pixel.
+  std::span<double> values() { return values_; }
+  void set(std::size_t pixel, dvec3 value) {
+    double* p = values_.data() + 3 * pixel;
+    p[0] = value.x, p[1] = value.y, p[2] = value.z;
+  }
 
  private:
   std::vector<double> values_;
 };
 
-/// Which layers were asked for, as flags, and what follows for the estimators.
+/// Which layers were asked for, as flags, and what follows for the estimators. The error of a layer needs the layer.
 struct LayerNeeds {
   explicit LayerNeeds(const std::vector<std::string>& layers);
   bool emission, direct, caustic, specular, indirect, specular_caustic, irradiance, irradiance_caustic, beauty;
+  bool specular_caustic_bias;
   bool geometry;  ///< any of albedo, normal, position, depth, id
   /// Must paths from the eye go on after a first diffuse event?
   bool beyondDiffuse() const { return indirect || irradiance; }
   /// Must paths from the eye follow a first specular event?
-  bool throughSpecular() const { return specular || specular_caustic; }
+  bool throughSpecular() const { return specular || specular_caustic || specular_caustic_bias; }
   /// What paths from the eye must be traced for.
   bool eyeTraced(bool light_tracing) const {
     const bool caustics_too = !light_tracing && (caustic || irradiance_caustic);
-    return emission || direct || specular || indirect || irradiance || specular_caustic || caustics_too;
+    return emission || direct || indirect || irradiance || throughSpecular() || caustics_too;
   }
   /// What photons must be traced for.
   bool lightTraced() const { return caustic || indirect || irradiance || irradiance_caustic; }
@@ -49,10 +58,27 @@ struct Film {
   Film(int width, int height, const LayerNeeds& needs);
   int width, height;
   // From the eye, to be divided by the samples per pixel.
-  FilmPlane emission, direct, caustic_from_eye, specular, indirect_from_eye, specular_caustic, irradiance_from_eye,
-      irradiance_caustic_from_eye;
+  FilmPlane emission, direct, caustic_from_eye, specular, indirect_from_eye, specular_caustic, specular_caustic_bias,
+      irradiance_from_eye, irradiance_caustic_from_eye;
   // From the lights, to be divided by the number of batches.
   FilmPlane caustic, indirect, irradiance, irradiance_caustic;
+
+  /// Every plane, in a fixed order.
+  template <class Visit>
+  void visitPlanes(const Visit& visit) {
+    for (FilmPlane* plane : {&emission, &direct, &caustic_from_eye, &specular, &indirect_from_eye, &specular_caustic,
+                             &specular_caustic_bias, &irradiance_from_eye, &irradiance_caustic_from_eye, &caustic,
+                             &indirect, &irradiance, &irradiance_caustic})
+      visit(*plane);
+  }
 };
+
+/// The sums that make one layer; a null or inactive plane adds nothing.
+struct LayerPlanes {
+  const FilmPlane* from_eye;
+  const FilmPlane* from_lights;
+};
+/// Of a layer that is sampled, or of all that `beauty` is the sum of, in the order of layerInfos(); none for geometry.
+std::vector<LayerPlanes> planesOf(const Film& film, std::string_view layer);
 
 }  // namespace nephroid

@@ -54,7 +54,7 @@ void LightPath::arrive(const RayHit& hit) {
 void LightPath::depart() {
   Walker::depart(encounter_);
   if (bounce_ < context_->world.options.max_bounces) return;
-  lose(LossReason::kBounceLimit, flux_);
+  lose(LossReason::kBounceLimit, flux());
   alive_ = false;
 }
 
@@ -65,20 +65,21 @@ void LightPath::lose(LossReason reason, vec3 flux) {
 
 bool LightPath::endStep() {
   if (encounter_.transmittance != vec3(1.0F)) {
-    const vec3 kept = flux_ * encounter_.transmittance;
+    const vec3 before = flux();
+    const vec3 kept = before * encounter_.transmittance;
     if (!isFinite(kept)) {
-      lose(LossReason::kNumerical, flux_);
+      lose(LossReason::kNumerical, before);
       return false;
     }
-    if (accounted()) ledger_->absorbed += dvec3(flux_) - dvec3(kept);
-    flux_ = kept;
+    if (accounted()) ledger_->absorbed += dvec3(before) - dvec3(kept);
+    flux_ *= encounter_.transmittance;
   }
   if (encounter_.overflow) {
-    lose(LossReason::kInteriorOverflow, flux_);
+    lose(LossReason::kInteriorOverflow, flux());
     return false;
   }
   if (!encounter_.hit) {
-    if (accounted()) (stage_ == Stage::kEmitted ? ledger_->missed : ledger_->escaped) += dvec3(flux_);
+    if (accounted()) (stage_ == Stage::kEmitted ? ledger_->missed : ledger_->escaped) += dvec3(flux());
     return false;
   }
   return flux_ != vec3(0.0F);
@@ -87,27 +88,26 @@ bool LightPath::endStep() {
 bool LightPath::scatter() {
   const ReferenceOptions& options = context_->world.options;
   if (stage_ == Stage::kEmitted && !context_->is_target[encounter_.point.instance] && !encounter_.material->is_pane) {
-    ledger_->blocked += dvec3(flux_);
+    ledger_->blocked += dvec3(flux());
     return false;
   }
   const vec3 wo = -state_.ray.dir;
-  const vec3 weight = drawWavelength(state_, encounter_.boundary, options.spectral, sampler_);
-  const vec3 weighted = flux_ * weight;
+  const vec3 before = flux();
+  drawWavelength(state_, encounter_, options.spectral, sampler_);
   const float ior_from = iorOf(encounter_.boundary.from, state_.wavelength_nm);
   const float ior_to = iorOf(encounter_.boundary.to, state_.wavelength_nm);
   const Bsdf bsdf(*encounter_.material, encounter_.point, wo, ior_from, ior_to, options.specular_alpha);
+  if (!bsdf.isClear()) settleWavelength(state_, encounter_);
+  const vec3 weighted = flux();
   // The interface's share goes on as S; the rest is the base's (or, without a base, is absorbed).
   const vec3 specular_share = bsdf.hasSpecular() ? bsdf.interfaceAlbedo() : vec3(0.0F);
   const vec3 rest = weighted * (1.0F - specular_share);
   // Not finite either if `weighted` is not: nothing of this event has been accounted for yet.
   if (!isFinite(rest)) {
-    lose(LossReason::kNumerical, flux_);
+    lose(LossReason::kNumerical, before);
     return false;
   }
-  if (weight != vec3(1.0F)) {
-    if (accounted()) roulette_ += dvec3(flux_) - dvec3(weighted);
-    flux_ = weighted;
-  }
+  if (accounted() && weighted != before) roulette_ += dvec3(before) - dvec3(weighted);
   if (!bsdf.hasDiffuse()) {
     if (accounted()) ledger_->absorbed += dvec3(rest);
   } else if (stage_ == Stage::kEmitted) {
@@ -116,7 +116,7 @@ bool LightPath::scatter() {
     if (stage_ == Stage::kSpecularChain) {
       ledger_->deposited += dvec3(rest);
       if (context_->keep_deposits)
-        context_->tally.deposits.push_back({encounter_.point.position, state_.ray.dir, flux_});
+        context_->tally.deposits.push_back({encounter_.point.position, state_.ray.dir, weighted});
     }
     connectToCamera(bsdf, wo);
   }
@@ -126,7 +126,7 @@ bool LightPath::scatter() {
 bool LightPath::continueWith(const Bsdf& bsdf, vec3 specular_share, vec3 wo) {
   const float p_specular = bsdf.specularProbability();
   const bool diffuse_allowed = context_->continue_after_diffuse && stage_ != Stage::kEmitted && bsdf.hasDiffuse();
-  const vec3 specular_flux = flux_ * specular_share;
+  const vec3 specular_flux = flux() * specular_share;
   const bool must_choose = bsdf.hasDiffuse();
   const bool specular = p_specular > 0.0F && (!must_choose || sampler_.next1D() < p_specular);
   const float p_class = !must_choose ? 1.0F : specular ? p_specular : 1.0F - p_specular;
@@ -153,7 +153,9 @@ bool LightPath::scatterSpecular(const Bsdf& bsdf, vec3 carried, float p_class) {
     lose(smooth ? LossReason::kShadingNormal : LossReason::kMicrofacet, carried);
     return false;
   }
-  const vec3 out = flux_ * (s->weight / p_class);
+  followWavelengths(state_, encounter_, -state_.ray.dir, context_->world.options.specular_alpha, s->transmitted);
+  const vec3 unweighted = flux_ * (s->weight / p_class);
+  const vec3 out = unweighted * state_.hero.weight;
   if (!isFinite(out)) {
     lose(LossReason::kNumerical, carried);
     return false;
@@ -165,7 +167,7 @@ bool LightPath::scatterSpecular(const Bsdf& bsdf, vec3 carried, float p_class) {
     else
       ledger_->lost[static_cast<std::size_t>(LossReason::kMicrofacet)] += difference;
   }
-  flux_ = out;
+  flux_ = unweighted;
   if (!s->pass && stage_ == Stage::kEmitted) stage_ = Stage::kSpecularChain;
   return leave(*s);
 }
@@ -193,7 +195,7 @@ bool LightPath::leave(const BsdfSample& s) {
     const bool entering = encounter_.boundary.entering;
     if (!(s.transmitted ? crossInterface(state_.interior, solid, material, entering)
                         : reflectInside(state_.interior, solid, material, entering))) {
-      lose(LossReason::kInteriorOverflow, flux_);
+      lose(LossReason::kInteriorOverflow, flux());
       return false;
     }
   }
@@ -207,9 +209,9 @@ bool LightPath::survives() {
   const float q = std::min(10.0F * left, 1.0F);
   if (q >= 1.0F) return true;
   const bool alive = sampler_.next1D() < q;
-  const vec3 kept = alive ? flux_ / q : vec3(0.0F);
-  if (accounted()) roulette_ += dvec3(flux_) - dvec3(kept);
-  flux_ = kept;
+  const vec3 before = flux();
+  flux_ = alive ? flux_ / q : vec3(0.0F);
+  if (accounted()) roulette_ += dvec3(before) - dvec3(flux());
   return alive;
 }
 
@@ -224,9 +226,9 @@ void LightPath::connectToCamera(const Bsdf& bsdf, vec3 wo) {
   const Material* medium = same_side ? encounter_.boundary.from : encounter_.boundary.to;
   const Ray line{offsetOrigin(encounter_.point, c->dir), c->dir, c->distance};
   const float scale = std::abs(cos_camera) * bsdf.shadingCosineRatio(wo) * c->importance;
-  const vec3 irradiance = same_side ? flux_ * scale : vec3(0.0F);
+  const vec3 irradiance = same_side ? flux() * scale : vec3(0.0F);
   context_->connections.add({line, medium}, {static_cast<std::uint32_t>(c->y * camera.width() + c->x),
-                                             stage_ == Stage::kSpecularChain, flux_ * value.f * scale, irradiance});
+                                             stage_ == Stage::kSpecularChain, flux() * value.f * scale, irradiance});
 }
 
 }  // namespace nephroid

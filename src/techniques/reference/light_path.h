@@ -53,6 +53,8 @@ class LightPath {
   enum class Stage : std::uint8_t { kEmitted, kSpecularChain, kAfterDiffuse };
 
   bool accounted() const { return stage_ != Stage::kAfterDiffuse; }
+  /// What the photon carries.
+  vec3 flux() const { return flux_ * state_.hero.weight; }
   void lose(LossReason reason, vec3 flux);
   void depart();
   // All of these say false if the photon ends.
@@ -73,7 +75,8 @@ class LightPath {
   Stage stage_ = Stage::kEmitted;
   bool alive_ = true;
   int bounce_ = 0;
-  vec3 flux_, emitted_;
+  vec3 flux_;  ///< without the weight of its wavelengths
+  vec3 emitted_;
   dvec3 roulette_{0.0};
 };
 

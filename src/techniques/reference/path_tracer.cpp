@@ -73,10 +73,11 @@ class EyePath {
   /// @return false if the path ends
   bool scatter() {
     const vec3 wo = -state_.ray.dir;
-    throughput_ *= drawWavelength(state_, encounter_.boundary, world_.options.spectral, sampler_);
+    drawWavelength(state_, encounter_, world_.options.spectral, sampler_);
     const float ior_from = iorOf(encounter_.boundary.from, state_.wavelength_nm);
     const float ior_to = iorOf(encounter_.boundary.to, state_.wavelength_nm);
     const Bsdf bsdf(*encounter_.material, encounter_.point, wo, ior_from, ior_to, world_.options.specular_alpha);
+    if (!bsdf.isClear()) settleWavelength(state_, encounter_);
     for (const EventClass c : {EventClass::kSpecular, EventClass::kDiffuse})
       if (bsdf.isEvaluable(c) && isWanted(class_.with(c))) connectToLight(bsdf, c);
     if (caustics_ && class_.isEyeSpecular() && bsdf.hasDiffuse()) gatherCaustic(bsdf);
@@ -87,17 +88,23 @@ class EyePath {
   void gatherCaustic(const Bsdf& bsdf) {
     const SurfacePoint& point = encounter_.point;
     const float radius = caustics_->radius();
-    vec3 radiance(0.0F);
+    vec3 radiance(0.0F), inner(0.0F);  // W·m⁻²·sr⁻¹ × area of the kernel; `inner`: of half of its area
     caustics_->visitNear(point.position, [&](const GridPhoton& photon) {
-      const vec3 wi = -photon.dir;
-      const float off_plane = std::abs(dot(photon.position - point.position, point.normal_geometric));
+      const vec3 wi = -photon.dir, offset = photon.position - point.position;
+      const float off_plane = std::abs(dot(offset, point.normal_geometric));
       // A photon of another surface nearby would leak light around edges.
       if (off_plane > kKernelFlatness * radius) return;
-      radiance +=
+      const vec3 value =
           photon.flux * bsdf.evaluate(EventClass::kDiffuse, wi, Transport::kRadiance).f * bsdf.shadingCosineRatio(wi);
+      radiance += value;
+      if (dot(offset, offset) <= 0.5F * radius * radius) inner += value;
     });
-    add(class_.with(EventClass::kDiffuse).with(EventClass::kSpecular), throughput_ * radiance / (kPi * radius * radius),
-        vec3(0.0F), true);
+    const vec3 scale = throughput_ / (kPi * radius * radius);
+    add(class_.with(EventClass::kDiffuse).with(EventClass::kSpecular), scale * radiance, vec3(0.0F), true);
+    // Where light varies smoothly a kernel errs in proportion to its area (Knaus & Zwicker 2011), so by twice what the
+    // whole says more than its half.
+    const vec3 bias = 2.0F * state_.hero.weight * scale * (radiance - 2.0F * inner);
+    if (film_.specular_caustic_bias.active() && isFinite(bias)) film_.specular_caustic_bias.add(pixel_, bias);
   }
 
   /// Can a path that begins with these events still end in a layer that was asked for?
@@ -148,6 +155,7 @@ class EyePath {
     const vec2 u = sampler_.next2D();
     const auto s = bsdf.sample(c, u, sampler_.next1D(), Transport::kRadiance);
     if (!s) return false;
+    followWavelengths(state_, encounter_, -state_.ray.dir, world_.options.specular_alpha, s->transmitted);
     throughput_ *= s->weight / p_class;
     irradiance_throughput_ *= s->weight / p_class;
     if (!s->pass) {
@@ -184,7 +192,8 @@ class EyePath {
     if (class_.count() < kRouletteStart) return true;
     // A path that has lost nothing is not ended: glass that keeps all its light stays free of this noise. Radiance over
     // the squared index is what refraction keeps.
-    const float ior = iorOf(state_.interior.medium(), state_.wavelength_nm);
+    // With other wavelengths aboard, chance must not depend on which of them is the hero.
+    const float ior = iorOf(state_.interior.medium(), state_.hero.open ? 0.0F : state_.wavelength_nm);
     const float kept = std::max(maxComponent(glm::abs(throughput_)), maxComponent(glm::abs(irradiance_throughput_)));
     const float q = kept * ior * ior / (eye_ior_ * eye_ior_);
     if (q >= 1.0F) return true;
@@ -197,6 +206,8 @@ class EyePath {
   void add(const PathClass& path, vec3 radiance, vec3 irradiance, bool gathered = false) {
     if (world_.options.light_tracing && path.isLightTraced()) return;
     if (caustics_ && path.isSpecularCaustic() && !gathered) return;
+    radiance *= state_.hero.weight;
+    irradiance *= state_.hero.weight;
     if (!isFinite(radiance) || !isFinite(irradiance)) {
       ++counters_.not_finite;
       return;
@@ -236,7 +247,7 @@ class EyePath {
   PathState state_;
   Encounter encounter_;
   PathClass class_;
-  vec3 throughput_{1.0F};
+  vec3 throughput_{1.0F};             ///< without the weight of its wavelengths
   vec3 irradiance_throughput_{0.0F};  ///< the same from the first diffuse event on, with cosine instead of BSDF there
   vec3 vertex_{0.0F};                 ///< of the last event, or the eye
   bool previous_is_delta_ = true;

@@ -4,13 +4,21 @@
 
 #include <algorithm>
 #include <atomic>
+#include <bit>
 #include <chrono>
 #include <cmath>
+#include <filesystem>
 #include <memory>
+#include <system_error>
+#include <utility>
 
 #include "core/parallel.h"
 #include "nephroid/error.h"
+#include "nephroid/nephroid.h"
+#include "scene/fingerprint.h"
 #include "techniques/layers.h"
+#include "techniques/reference/checkpoint.h"
+#include "techniques/reference/error_estimate.h"
 #include "techniques/reference/geometry_layers.h"
 #include "techniques/reference/path_tracer.h"
 #include "techniques/reference/photon_batch.h"
@@ -27,8 +35,34 @@ constexpr double kRadiusAlpha = 2.0 / 3.0;
 constexpr std::uint64_t kDefaultSamples = 32;
 constexpr std::uint64_t kDefaultPhotons = 2'000'000;
 
+/// Batches that a budget is cut into where errors are estimated: the relative error of a standard error from B batches
+/// is 1/√(2(B − 1)), here 18 %.
+constexpr std::uint64_t kErrorBatches = 16;
+/// Passes from the eye in the first batches of an estimate, at most. Points of the sampler are well spread together, so
+/// that a mean over them errs less than the spread of single ones says: batches of four know of that.
+constexpr std::uint64_t kErrorBatchPasses = 4;
+/// Later batches are as long as this share of all passes, for the same reason (see nextErrorBatch).
+constexpr std::uint64_t kErrorBatchShare = 4;
+/// Batches of each direction before an estimate may end a render: of fewer, even the mean over a picture is unsure.
+constexpr std::uint64_t kFirstErrorBatches = 8;
+
 using Clock = std::chrono::steady_clock;
 double secondsSince(Clock::time_point start) { return std::chrono::duration<double>(Clock::now() - start).count(); }
+
+/// Layers whose error has to be estimated: because it is a layer too, or because it ends the render.
+std::vector<std::string> layersWithError(const RenderSettings& settings) {
+  std::vector<std::string> layers;
+  for (const LayerInfo& info : layerInfos()) {
+    const auto asked = [&](std::string_view name) {
+      return std::find(settings.layers.begin(), settings.layers.end(), name) != settings.layers.end();
+    };
+    const std::string error = std::string(info.name) + "_error";
+    const auto has_error = [&](const LayerInfo& other) { return other.name == error; };
+    if (std::none_of(layerInfos().begin(), layerInfos().end(), has_error)) continue;
+    if (asked(error) || (settings.target_error > 0.0 && asked(info.name))) layers.emplace_back(info.name);
+  }
+  return layers;
+}
 
 /// One progressive render.
 class ReferenceRender {
@@ -39,10 +73,13 @@ class ReferenceRender {
         settings_(settings),
         progress_(progress),
         stop_(stop),
+        camera_(camera),
         needs_(settings.layers),
         world_(scene, camera, settings.width, settings.height, makeOptions(settings)),
         film_(settings.width, settings.height, needs_),
-        path_tracer_(world_, needs_) {
+        errors_(film_, layersWithError(settings)),
+        path_tracer_(world_, needs_),
+        row_done_(static_cast<std::size_t>(settings.height), 0) {
     const bool gather = settings.params.getString("specular-caustics") == "photons" && needs_.throughSpecular();
     if ((world_.options.light_tracing && needs_.lightTraced()) || gather)
       light_tracer_ = std::make_unique<LightTracer>(
@@ -51,6 +88,8 @@ class ReferenceRender {
     gather_ = gather && light_tracer_;
     if (gather_) path_tracer_.gatherFrom(&caustics_);
     if (light_tracer_) shareLedgers();
+    if (settings.target_error > 0.0 && errors_.empty())
+      throw UsageError("a target error needs a layer that converges, such as beauty; those asked for are exact");
     chooseBudgets();
     addStage("build", secondsSince(start_));
   }
@@ -59,14 +98,22 @@ class ReferenceRender {
     RenderResult result;
     result.image.width = settings_.width, result.image.height = settings_.height;
     timed("geometry", [&] { geometry_ = renderGeometryLayers(world_, settings_.layers); });
+    std::error_code unknown;  // then the file is not read, and writing it tells why
+    if (std::filesystem::exists(settings_.checkpoint.path, unknown)) resume(result);
+    Clock::time_point saved = Clock::now();
     while (!finished()) {
       if (stopped()) break;
       step();
+      if (keepsCheckpoint() && secondsSince(saved) >= settings_.checkpoint.interval_s) {
+        save(result);
+        saved = Clock::now();
+      }
       report();
     }
     result.interrupted = stopped();
     const bool nothing = (samples_budget_ > 0 && samples_done_ == 0) && (photons_budget_ == 0 || photons_done_ == 0);
     if (result.interrupted && nothing) throw InterruptedError("interrupted before there was anything to keep");
+    if (keepsCheckpoint()) save(result);
     develop(result);
     describe(result);
     return result;
@@ -85,21 +132,28 @@ class ReferenceRender {
 
   void chooseBudgets() {
     const bool timed_only = settings_.seconds > 0 && settings_.samples == 0 && settings_.photons == 0;
+    const bool open_ended = timed_only || settings_.target_error > 0.0;
     constexpr std::uint64_t kUnlimited = std::uint64_t{1} << 62;
-    samples_budget_ = settings_.samples ? settings_.samples : timed_only ? kUnlimited : kDefaultSamples;
-    photons_budget_ = settings_.photons ? settings_.photons : timed_only ? kUnlimited : kDefaultPhotons;
+    samples_budget_ = settings_.samples ? settings_.samples : open_ended ? kUnlimited : kDefaultSamples;
+    photons_budget_ = settings_.photons ? settings_.photons : open_ended ? kUnlimited : kDefaultPhotons;
     if (!needs_.eyeTraced(world_.options.light_tracing)) samples_budget_ = 0;
     if (!light_tracer_) photons_budget_ = 0;
-    if (light_tracer_) makePhotonBatch(photons_budget_ < kUnlimited);
+    if (light_tracer_) makePhotonBatch(chooseBatchPhotons(photons_budget_ < kUnlimited));
+    error_batch_passes_ = std::clamp<std::uint64_t>(samples_budget_ / kErrorBatches, 1, kErrorBatchPasses);
   }
 
   /// Equal batches, so that each counts the same.
-  void makePhotonBatch(bool limited) {
+  std::uint32_t chooseBatchPhotons(bool limited) const {
     constexpr std::uint64_t kMax = PhotonBatch::kMaxPhotons;
-    const std::uint64_t batches = limited ? (photons_budget_ + kMax - 1) / kMax : 1;
-    const std::uint64_t photons = limited ? (photons_budget_ + batches - 1) / batches : kMax;
+    if (!limited) return kMax;
+    const std::uint64_t fewest = errors_.empty() ? 1 : std::min(kErrorBatches, photons_budget_);
+    const std::uint64_t batches = std::max((photons_budget_ + kMax - 1) / kMax, fewest);
+    return static_cast<std::uint32_t>((photons_budget_ + batches - 1) / batches);
+  }
+  void makePhotonBatch(std::uint32_t photons) {
     const std::size_t pixels = static_cast<std::size_t>(settings_.width) * settings_.height;
-    photon_batch_ = std::make_unique<PhotonBatch>(*light_tracer_, static_cast<std::uint32_t>(photons), pixels);
+    batch_photons_ = photons;
+    photon_batch_ = std::make_unique<PhotonBatch>(*light_tracer_, photons, pixels);
   }
 
   bool stopped() const { return stop_ && stop_->requested(); }
@@ -110,23 +164,19 @@ class ReferenceRender {
     if (!samplesLeft() && !photonsLeft()) return true;
     // Time may end a render only when every layer has something in it.
     const bool something = (samples_budget_ == 0 || samples_done_ > 0) && (photons_budget_ == 0 || photons_done_ > 0);
-    return something && timeIsUp();
+    if (!something) return false;
+    if (settings_.target_error > 0.0) {
+      // More of one direction alone need not ever lead to the target.
+      const bool spent = (samples_budget_ > 0 && !samplesLeft()) || (photons_budget_ > 0 && !photonsLeft());
+      if (spent || (errorIsKnown() && error_.error.total() <= settings_.target_error)) return true;
+    }
+    return timeIsUp();
   }
 
-  /// One pass of whichever direction is behind: by time if time is the budget, else by share of its budget.
+  /// One pass of whichever direction is behind.
   void step() {
-    bool photons = photonsLeft();
-    if (photons && samplesLeft()) {
-      // What is gathered must have been emitted; otherwise the picture comes first.
-      if (samples_done_ == 0)
-        photons = gather_ && photons_done_ == 0;
-      else if (photons_done_ > 0)
-        photons = settings_.seconds > 0
-                      ? light_seconds_ <= path_seconds_
-                      : share(photons_done_, photons_budget_) <= share(samples_done_, samples_budget_);
-    }
     const Clock::time_point begin = Clock::now();
-    if (photons) {
+    if (photonsAreNext()) {
       tracePhotons();
       light_seconds_ += secondsSince(begin);
     } else {
@@ -134,32 +184,59 @@ class ReferenceRender {
       path_seconds_ += secondsSince(begin);
     }
   }
+  bool photonsAreNext() const {
+    if (!photonsLeft() || !samplesLeft()) return photonsLeft();
+    // What is gathered must have been emitted; otherwise the picture comes first.
+    if (samples_done_ == 0) return gather_ && photons_done_ == 0;
+    if (photons_done_ == 0) return true;
+    if (settings_.target_error > 0.0) return photonsLessenError();
+    if (settings_.seconds > 0) return light_seconds_ <= path_seconds_;
+    return share(photons_done_, photons_budget_) <= share(samples_done_, samples_budget_);
+  }
+  /// The direction that lessens the error more by another ray: a variance falls by its share per pass, and a pass costs
+  /// rays. Rays, not seconds: equal renders must take equal steps.
+  bool photonsLessenError() const {
+    // Paths that gather the same photons over and over err alike.
+    if (gather_ && samples_done_ - samples_at_photons_ < error_batch_passes_) return false;
+    if (gather_ && batches_done_ < samples_done_ / error_batch_passes_) return true;
+    if (!errorIsKnown()) return share(photons_done_, kDefaultPhotons) <= share(samples_done_, kDefaultSamples);
+    return error_.error.from_lights * static_cast<double>(path_rays_) >=
+           error_.error.from_eye * static_cast<double>(light_rays_);
+  }
+  bool errorIsKnown() const { return errors_.batches() >= kFirstErrorBatches; }
+
   static double share(std::uint64_t done, std::uint64_t budget) {
     return static_cast<double>(done) / static_cast<double>(budget);
   }
 
-  /// One sample per pixel. Pixels are independent, so the order of tiles does not matter.
+  /// One sample per pixel. Pixels are independent, so the order of tiles does not matter. If it is stopped, the rows
+  /// that are done are remembered, and the next call does the others.
   void tracePaths() {
     const auto sample = static_cast<std::uint32_t>(samples_done_);
-    std::vector<PathCounters> rows(static_cast<std::size_t>(settings_.height));
-    std::atomic<bool> complete{true};
-    parallelFor(static_cast<std::size_t>(settings_.height), [&](std::size_t row) {
+    std::vector<PathCounters> rows(row_done_.size());
+    parallelFor(row_done_.size(), [&](std::size_t row) {
+      if (row_done_[row] || (stopped() && samples_done_ > 0)) return;
       const int y = static_cast<int>(row);
-      if (stopped() && samples_done_ > 0) {
-        complete = false;
-        return;
-      }
-      for (int x = 0; x < settings_.width; ++x) path_tracer_.tracePath(x, y, sample, film_, rows[y]);
+      for (int x = 0; x < settings_.width; ++x) path_tracer_.tracePath(x, y, sample, film_, rows[row]);
+      row_done_[row] = 1;
     });
-    // A pass that was cut short has some rows more than others: those rows know it by the pass count they are divided
-    // by.
-    if (!complete) {
-      partial_rows_.assign(static_cast<std::size_t>(settings_.height), false);
-      for (int y = 0; y < settings_.height; ++y) partial_rows_[y] = rows[y].rays > 0;
-      return;
-    }
-    for (const PathCounters& row : rows) rays_ += row.rays, not_finite_ += row.not_finite;
+    for (const PathCounters& row : rows) path_rays_ += row.rays, not_finite_ += row.not_finite;
+    if (std::find(row_done_.begin(), row_done_.end(), 0) != row_done_.end()) return;
+    std::fill(row_done_.begin(), row_done_.end(), std::uint8_t{0});
     ++samples_done_;
+    if (!gather_ || !photonsLeft()) closeEyeBatch();
+  }
+  bool isBetweenPasses() const { return std::find(row_done_.begin(), row_done_.end(), 1) == row_done_.end(); }
+
+  /// Passes of the next batch: aligned blocks of powers of two, which are what the sampler spreads well.
+  std::uint64_t nextErrorBatch() const {
+    return std::max(error_batch_passes_, std::bit_floor(errors_.closedEyePasses()) / kErrorBatchShare);
+  }
+
+  void closeEyeBatch() {
+    if (errors_.empty() || samples_done_ - errors_.closedEyePasses() < nextErrorBatch()) return;
+    errors_.closeEyeBatch(samples_done_);
+    if (settings_.target_error > 0.0) error_ = errors_.worst();
   }
 
   void tracePhotons() {
@@ -167,33 +244,45 @@ class ReferenceRender {
     photon_batch_->visitSplats([&](const Splat& splat, float scale) { addSplat(splat, scale); });
     for (const PhotonBatch::Chunk& chunk : photon_batch_->chunks()) {
       ledgers_[chunk.emitter].add(chunk.tally.ledger);
-      rays_ += chunk.tally.rays;
+      light_rays_ += chunk.tally.rays;
       not_finite_ += chunk.tally.not_finite;
       photons_done_ += static_cast<std::uint64_t>(chunk.tally.ledger.emitted_count);
     }
     ++batches_done_;
+    if (!errors_.empty()) errors_.closeLightBatch(batches_done_);
+    // Paths that gather the same photons belong to the same batch.
+    if (gather_) closeEyeBatch();
+    if (settings_.target_error > 0.0) error_ = errors_.worst();
+    samples_at_photons_ = samples_done_;
     if (!gather_) return;
+    const std::vector<GridPhoton> deposits = collectDeposits();
+    shrinkKernel(deposits);
+    replaceCaustics(deposits);
+  }
+
+  std::vector<GridPhoton> collectDeposits() const {
     std::vector<GridPhoton> deposits;
-    for (PhotonBatch::Chunk& chunk : photon_batch_->chunks()) {
-      for (GridPhoton& photon : chunk.tally.deposits) {
+    for (const PhotonBatch::Chunk& chunk : std::as_const(*photon_batch_).chunks()) {
+      for (GridPhoton photon : chunk.tally.deposits) {
         photon.flux *= photon_batch_->scaleOf(chunk);
         deposits.push_back(photon);
       }
     }
-    replaceCaustics(deposits);
+    return deposits;
   }
 
   /// The photons of the latest batch, under a kernel that shrinks from batch to batch (Knaus & Zwicker 2011, eq. 15):
   /// the mean over batches then converges although each batch is blurred.
-  void replaceCaustics(const std::vector<GridPhoton>& deposits) {
-    if (deposits.empty()) return;
-    if (first_radius_ == 0.0F) {
-      first_radius_ = chooseGatherRadius(deposits, kGatherPhotons);
-      radius_squared_ = static_cast<double>(first_radius_) * first_radius_;
+  void shrinkKernel(const std::vector<GridPhoton>& deposits) {
+    if (radius_squared_ == 0.0) {
+      const double radius = chooseGatherRadius(deposits, kGatherPhotons);
+      radius_squared_ = radius * radius;
     } else {
       const double k = static_cast<double>(batches_done_ - 1);
       radius_squared_ *= (k + kRadiusAlpha) / (k + 1.0);
     }
+  }
+  void replaceCaustics(const std::vector<GridPhoton>& deposits) {
     const auto radius = static_cast<float>(std::sqrt(radius_squared_));
     caustics_ = radius > 0.0F ? PhotonGrid(deposits, radius) : PhotonGrid();
   }
@@ -205,6 +294,64 @@ class ReferenceRender {
     addTo(splat.is_caustic ? film_.caustic : film_.indirect, splat.radiance);
     addTo(film_.irradiance, splat.irradiance);
     if (splat.is_caustic) addTo(film_.irradiance_caustic, splat.irradiance);
+  }
+
+  bool keepsCheckpoint() const { return !settings_.checkpoint.path.empty(); }
+
+  /// What must be the same where a render goes on. Budgets are not among it: a finished render can be given more.
+  CheckpointFacts describeIdentity() const {
+    CheckpointFacts facts{{"version", std::string(version())},
+                          {"scene", fmt::format("{:016x} by its content", fingerprintScene(world_.scene.scene()))},
+                          {"camera", fmt::format("{:016x} by its content", fingerprintCamera(camera_))},
+                          {"size", fmt::format("{}x{}", settings_.width, settings_.height)},
+                          {"seed", std::to_string(settings_.seed)},
+                          {"list of layers", fmt::format("{}", fmt::join(settings_.layers, ","))},
+                          {"list of estimated errors", fmt::format("{}", fmt::join(layersWithError(settings_), ","))}};
+    for (const ParamSpec& spec : settings_.params.specs())
+      facts.emplace_back("parameter " + spec.name, settings_.params.toText(spec.name));
+    return facts;
+  }
+
+  /// All that the next step depends on, to a writer or from a reader. Photons that are gathered are traced again.
+  template <class State>
+  void visitState(State& state) {
+    state.value(batch_photons_);
+    film_.visitPlanes([&](FilmPlane& plane) { state.values(plane.values()); });
+    errors_.visitState(state);
+    state.values(std::span(row_done_));
+    for (Ledger& ledger : ledgers_) ledger.visitState(state);
+    for (std::uint64_t* count : {&samples_done_, &photons_done_, &batches_done_, &samples_at_photons_, &path_rays_,
+                                 &light_rays_, &not_finite_})
+      state.value(*count);
+    for (double* number : {&radius_squared_, &path_seconds_, &light_seconds_}) state.value(*number);
+  }
+
+  /// A full disk does not end a render: what is in memory is worth more than its copy.
+  void save(RenderResult& result) {
+    result.checkpoint_failure.clear();
+    StateWriter state;
+    visitState(state);
+    try {
+      writeCheckpoint(settings_.checkpoint.path, describeIdentity(), state.bytes());
+    } catch (const ResourceError& error) {
+      result.checkpoint_failure = error.what();
+    }
+  }
+
+  /// @throws InputError
+  void resume(RenderResult& result) {
+    const std::vector<std::byte> bytes = readCheckpoint(settings_.checkpoint.path, describeIdentity());
+    StateReader state(bytes);
+    visitState(state);
+    if (!state.isDone())
+      throw InputError(
+          fmt::format("{}: holds other sums than this render has; delete it to begin anew", settings_.checkpoint.path));
+    if (light_tracer_) makePhotonBatch(batch_photons_);
+    if (gather_ && batches_done_ > 0 && photon_batch_->trace(batches_done_ - 1, [&] { return stopped(); }))
+      replaceCaustics(collectDeposits());
+    if (settings_.target_error > 0.0) error_ = errors_.worst();
+    result.notes.push_back(fmt::format("went on from {} with {} samples, {:.1f} M photons", settings_.checkpoint.path,
+                                       samples_done_, static_cast<double>(photons_done_) * 1e-6));
   }
 
   void shareLedgers() {
@@ -223,49 +370,45 @@ class ReferenceRender {
     if (samples_budget_ > 0) by_budget += share(samples_done_, samples_budget_), ++budgets;
     if (photons_budget_ > 0) by_budget += share(photons_done_, photons_budget_), ++budgets;
     if (budgets > 0) fraction = std::max(fraction, by_budget / budgets);
-    progress_->update(std::min(fraction, 1.0), fmt::format("{} samples, {:.1f} M photons", samples_done_,
-                                                           static_cast<double>(photons_done_) * 1e-6));
+    std::string status =
+        fmt::format("{} samples, {:.1f} M photons", samples_done_, static_cast<double>(photons_done_) * 1e-6);
+    if (settings_.target_error > 0.0 && errorIsKnown()) {
+      // The error falls with the inverse of the work.
+      fraction = std::max(fraction, settings_.target_error / error_.error.total());
+      status = fmt::format("{} relMSE {:.2g}, {}", error_.layer, error_.error.total(), status);
+    }
+    progress_->update(std::min(fraction, 1.0), status);
   }
 
   /// From sums to pictures.
   void develop(RenderResult& result) {
+    // Of a pass that was cut short some rows hold more than others: no batch.
+    if (!errors_.empty() && isBetweenPasses()) errors_.closeEyeBatch(samples_done_);
     for (const std::string& name : settings_.layers) {
       const auto geometry =
           std::find_if(geometry_.begin(), geometry_.end(), [&](const Layer& l) { return l.name == name; });
       if (geometry != geometry_.end())
         result.image.layers.push_back(std::move(*geometry));
+      else if (const std::string_view erring = erringLayer(name); !erring.empty())
+        result.image.layers.push_back({name, errors_.standardError(erring, samples_done_, batches_done_)});
       else
         result.image.layers.push_back({name, developLayer(name)});
     }
   }
 
   Image developLayer(std::string_view name) const {
-    struct Part {
-      std::string_view layer;
-      const FilmPlane* from_eye;
-      const FilmPlane* from_lights;
-    };
-    const Part parts[] = {{"emission", &film_.emission, nullptr},
-                          {"direct", &film_.direct, nullptr},
-                          {"caustic", &film_.caustic_from_eye, &film_.caustic},
-                          {"specular", &film_.specular, nullptr},
-                          {"indirect", &film_.indirect_from_eye, &film_.indirect},
-                          {"specular_caustic", &film_.specular_caustic, nullptr},
-                          {"irradiance", &film_.irradiance_from_eye, &film_.irradiance},
-                          {"irradiance_caustic", &film_.irradiance_caustic_from_eye, &film_.irradiance_caustic}};
+    const std::vector<LayerPlanes> parts = planesOf(film_, name);
     Image image(settings_.width, settings_.height, 3);
     const double by_batches = batches_done_ > 0 ? 1.0 / static_cast<double>(batches_done_) : 0.0;
     for (std::size_t pixel = 0; pixel < image.pixels.size() / 3; ++pixel) {
       const std::size_t row = pixel / static_cast<std::size_t>(settings_.width);
-      const std::uint64_t samples = samples_done_ + (!partial_rows_.empty() && partial_rows_[row] ? 1 : 0);
+      const std::uint64_t samples = samples_done_ + row_done_[row];
       const double by_samples = samples > 0 ? 1.0 / static_cast<double>(samples) : 0.0;
       vec3 sum(0.0F);
-      for (const Part& part : parts) {
-        const bool summed = name == "beauty" && findLayerInfo(part.layer).summed;
-        if (part.layer != name && !summed) continue;
+      for (const LayerPlanes& part : parts) {
         // Each layer is rounded to float before the sum, so that the files' layers add up to the files' beauty.
         dvec3 value(0.0);
-        if (part.from_eye->active()) value += part.from_eye->at(pixel) * by_samples;
+        if (part.from_eye && part.from_eye->active()) value += part.from_eye->at(pixel) * by_samples;
         if (part.from_lights && part.from_lights->active()) value += part.from_lights->at(pixel) * by_batches;
         sum += vec3(value);
       }
@@ -282,7 +425,7 @@ class ReferenceRender {
     addStage("path tracing", path_seconds_);
     addStage("light tracing", light_seconds_);
     result.stats.stages = stages_;
-    result.stats.rays = rays_;
+    result.stats.rays = path_rays_ + light_rays_;
     result.stats.photons = photons_done_;
     result.stats.samples = samples_done_;
     result.stats.not_finite = not_finite_;
@@ -292,6 +435,8 @@ class ReferenceRender {
     metadata["seed"] = std::to_string(settings_.seed);
     metadata["samples"] = std::to_string(samples_done_);
     metadata["photons"] = std::to_string(photons_done_);
+    for (const std::string& layer : layersWithError(settings_))
+      metadata["estimated_relmse." + layer] = fmt::format("{:.4g}", errors_.relMse(layer).total());
     for (const ParamSpec& spec : settings_.params.specs())
       metadata["set." + spec.name] = settings_.params.toText(spec.name);
     addNotes(result);
@@ -301,7 +446,7 @@ class ReferenceRender {
     bool any_delta = false;
     for (const Light& light : world_.scene.scene().lights)
       any_delta = any_delta || (light.kind == LightKind::kSun ? light.angle_deg == 0.0F : light.radius == 0.0F);
-    if (any_delta && (needs_.specular || needs_.specular_caustic))
+    if (any_delta && needs_.throughSpecular())
       result.notes.emplace_back(gather_ || !light_tracer_
                                     ? "light of sources without a size that returns through mirrors or glass after two "
                                       "or more diffuse bounces is missing"
@@ -309,6 +454,10 @@ class ReferenceRender {
                                       "give them extras.radius or extras.angle");
     if (any_delta && !world_.options.light_tracing && needs_.caustic)
       result.notes.emplace_back("caustic-estimator=path finds no caustic of lights without a size");
+    if (!errors_.empty() && errors_.batches() < 2)
+      result.notes.emplace_back("standard errors are infinite: they take two batches at least; raise the budget");
+    if (needs_.specular_caustic_bias && !gather_)
+      result.notes.emplace_back("specular_caustic_bias is black: nothing is gathered under a kernel");
     if (not_finite_ > 0)
       result.notes.push_back(fmt::format("{} path contributions were not finite and were dropped", not_finite_));
   }
@@ -325,22 +474,26 @@ class ReferenceRender {
   const RenderSettings& settings_;
   ProgressSink* progress_;
   const StopToken* stop_;
+  Camera camera_;
   LayerNeeds needs_;
   ReferenceWorld world_;
   Film film_;
+  ErrorEstimate errors_;
   PathTracer path_tracer_;
   std::unique_ptr<LightTracer> light_tracer_;
   std::unique_ptr<PhotonBatch> photon_batch_;
   std::vector<Ledger> ledgers_;
   std::vector<Layer> geometry_;
   std::vector<StageTime> stages_;
-  std::vector<bool> partial_rows_;
+  std::vector<std::uint8_t> row_done_;  ///< 1: holds the sample that is being taken already
   bool gather_ = false;
   PhotonGrid caustics_;
-  float first_radius_ = 0.0F;
   double radius_squared_ = 0.0;
   std::uint64_t samples_budget_ = 0, photons_budget_ = 0, samples_done_ = 0, photons_done_ = 0, batches_done_ = 0;
-  std::uint64_t rays_ = 0, not_finite_ = 0;
+  std::uint64_t path_rays_ = 0, light_rays_ = 0, not_finite_ = 0;
+  ErrorEstimate::Worst error_;  ///< at the last closed batches; only with a target
+  std::uint64_t error_batch_passes_ = 1, samples_at_photons_ = 0;
+  std::uint32_t batch_photons_ = 0;  ///< asked of a batch
   double path_seconds_ = 0, light_seconds_ = 0;
 };
 
@@ -363,6 +516,7 @@ Technique makeReferenceTechnique() {
       "path tracing and light tracing on the CPU, progressive: unbiased but for caustics in mirrors and through glass, "
       "whose kernels shrink; the truth for all others";
   technique.source = "Kajiya 1986; Arvo 1986; Veach 1997; Knaus & Zwicker 2011";
+  technique.is_progressive = true;
   technique.params = {
       makeSpecularAlphaParam(),
       {"max-bounces", 64, 1, 1024, "", "scattering events on a path before it is given up", {}},

@@ -100,6 +100,31 @@ TEST(Png, WriterStoresMetadataAsText) {
   EXPECT_THAT(text, HasSubstr("sRGB"));
 }
 
+TEST(Png, TextsAreReadBack) {
+  const std::map<std::string, std::string> metadata{
+      {"scene", "builtin:ring"}, {"seed", "7"}, {"file", "k\xc3\xbchl.glb"}};
+  const std::vector<std::byte> png = encodePng(Image(2, 2, 3, 0.5F), metadata);
+  EXPECT_EQ(readPngTexts(png), metadata);
+  // Cut anywhere, it gives what was whole.
+  for (std::size_t size = 0; size < png.size(); ++size)
+    for (const auto& [key, value] : readPngTexts(std::span(png).first(size)))
+      EXPECT_EQ(metadata.at(key), value) << size;
+}
+
+TEST(Png, TextInLatin1BecomesUtf8AndCompressedTextIsLeftOut) {
+  const auto chunk = [](std::string_view name, std::string_view data) {
+    return std::string("\0\0\0", 3) + static_cast<char>(data.size()) + std::string(name) + std::string(data) + "crc!";
+  };
+  const std::string file = "\x89PNG\r\n\x1a\n" + chunk("tEXt", std::string_view("a\0k\xfchl", 6)) +
+                           chunk("zTXt", std::string_view("z\0\0xx", 5)) +
+                           chunk("iTXt", std::string_view("c\0\1\0\0\0xx", 8)) +
+                           chunk("iTXt", std::string_view("u\0\0\0de\0\0\xc3\xbc", 10)) +
+                           chunk("iTXt", std::string_view("s", 1)) + chunk("tEXt", std::string_view("a\0twice", 7));
+  const std::map<std::string, std::string> expected{{"a", "k\xc3\xbchl"}, {"u", "\xc3\xbc"}};
+  EXPECT_EQ(readPngTexts(std::as_bytes(std::span(file))), expected);
+  EXPECT_TRUE(readPngTexts(std::as_bytes(std::span("GIF89a"))).empty());
+}
+
 TEST(Png, WriterNamesAFullDisk) {
   try {
     writePng("/dev/full", Image(64, 64, 3, 0.5F));

@@ -1,0 +1,101 @@
+// The primary rainbow of a drop of water.
+//
+// A ray that meets a ball at i (sin i is its distance from the axis over the radius) runs inside at r, sin i = n sin r,
+// is mirrored once at the back and leaves at i again. It is turned by i − r on entering, by π − 2r at the back and by
+// i − r on leaving:
+//
+//   D(i) = π + 2i − 4r.
+//
+// dD/di = 2 − 4 cos i / (n cos r) vanishes where n² cos² r = 4 cos² i; with n² cos² r = n² − sin² i,
+//
+//   cos i = √((n² − 1)/3).
+//
+// There D is least and light is densest: the bow, at π − D = 4r − 2i from the point opposite to the sun, beyond which
+// no such light comes. The ray passes the drop's centre at sin i radii, so on a screen at a distance of ρ radii it is
+// seen asin(sin i / ρ) further out.
+#pragma once
+
+#include <cmath>
+
+#include "scene/builtin/shapes.h"
+#include "support/closed_form.h"
+#include "support/closed_form_render.h"
+
+namespace nephroid::closed_form {
+
+struct DropCase {
+  double ior = 1.333, abbe = 55.8;  // water
+  double distance = 3000.0;         // of the screen, in radii of the drop
+  double angle_deg = 42.0;          // of the screen's middle from the drop's axis
+  double half_angle_deg = 3.0;      // of the screen
+};
+
+/// Where on the screen the bow ends, from the axis, rad.
+inline double bowAngle(const DropCase& c, double ior) {
+  const double incidence = std::acos(std::sqrt((ior * ior - 1.0) / 3.0));
+  const double inside = std::asin(std::sin(incidence) / ior);
+  return 4.0 * inside - 2.0 * incidence + std::asin(std::sin(incidence) / c.distance);
+}
+
+/// The screen seen squarely: rows across the bow, the outside on top.
+inline PlaneView dropView(const DropCase& c) {
+  const double angle = radiansD(c.angle_deg);
+  PlaneView view;
+  view.centre = vec3(dvec3(std::sin(angle), std::cos(angle), 0.0) * c.distance);
+  view.normal = -normalize(view.centre);
+  view.up = vec3(dvec3(std::cos(angle), -std::sin(angle), 0.0));
+  view.distance = 0.5 * c.distance;
+  view.columns = 1300;
+  view.rows = 314;
+  view.width = 2.0 * std::tan(radiansD(c.half_angle_deg)) * c.distance * view.columns / view.rows;
+  return view;
+}
+
+/// A ball of radius 1 under a sun from above, and a screen that is small and far enough to stand beside its light.
+inline SceneData makeDropScene(const DropCase& c) {
+  SceneData scene;
+  scene.name = "drop";
+  Material water;
+  water.name = "water";
+  water.roughness = 0.0F;
+  water.transmission = water.thickness = 1.0F;
+  water.ior = static_cast<float>(c.ior);
+  water.dispersion = static_cast<float>(20.0 / c.abbe);
+  Material white;
+  white.base_color = vec4(1.0F);
+  scene.materials = {water, white};
+  scene.meshes = {makeSphere("drop", dvec3(0.0), 1.0, 384)};
+  const PlaneView view = dropView(c);
+  const dvec3 right = dvec3(cross(view.up, view.normal)) * (0.5 * view.width);
+  scene.meshes.push_back(makeRectangle("screen", dvec3(view.centre), dvec3(view.up) * (0.5 * view.height()), -right));
+  scene.meshes[0].material = 0, scene.meshes[1].material = 1;
+  for (std::uint32_t i = 0; i < 2; ++i) {
+    Instance instance;
+    instance.name = scene.meshes[i].name;
+    instance.mesh = instance.object = i;
+    scene.instances.push_back(instance);
+  }
+  scene.lights = {makeSun(vec3(0, -1, 0))};
+  return scene;
+}
+
+/// RGB flux by angle from the axis, in equal bins over [lower, upper], rad.
+inline std::vector<dvec3> angularProfile(const PlanePicture& picture, double lower, double upper, std::size_t bins) {
+  const PlaneView& view = picture.view;
+  const dvec3 right(cross(view.up, view.normal));
+  std::vector<dvec3> profile(bins, dvec3(0.0));
+  for (int y = 0; y < picture.irradiance.height; ++y) {
+    for (int x = 0; x < picture.irradiance.width; ++x) {
+      const double along = (x + 0.5 - 0.5 * view.columns) * view.pixelSize();
+      const double across = (0.5 * view.rows - y - 0.5) * view.pixelSize();
+      const dvec3 place = dvec3(view.centre) + along * right + across * dvec3(view.up);
+      const double bin =
+          (std::acos(place.y / glm::length(place)) - lower) / (upper - lower) * static_cast<double>(bins);
+      if (bin >= 0.0 && bin < static_cast<double>(bins))
+        profile[static_cast<std::size_t>(bin)] += dvec3(picture.irradiance.rgb(x, y));
+    }
+  }
+  return profile;
+}
+
+}  // namespace nephroid::closed_form
