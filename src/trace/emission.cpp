@@ -200,26 +200,29 @@ class PointEmitter final : public Emitter {
 
  private:
   void markTargets(const EmissionTargets& targets) {
-    std::vector<DirectionCap> caps;
     const float cell_angle = std::sqrt(2.0F * kPi * one_minus_cos_) / static_cast<float>(kMaskSize);
+    // Parts need not be much smaller than the light that looks at them.
+    const float light_angle = light_.radius / std::max(length(targets.bounds().centre() - light_.position), 1e-30F);
+    const float part_angle = std::max(4.0F * cell_angle, 0.125F * light_angle);
+    CapMerger caps(std::max(0.25F * cell_angle, 0.05F * light_angle));
     bool everything = false;
     targets.visitTriangles([&](const vec3* p) {
-      visitParts(
-          Triangle{{p[0], p[1], p[2]}}, light_.position, 4.0F * cell_angle, 14,
-          [&](vec3 c, float radius, float distance) {
-            const float sine = (radius * 1.001F + light_.radius) / std::max(distance, 1e-30F);
-            if (sine >= 1.0F) {
-              everything = true;
-              return;
-            }
-            caps.push_back({frame_.toLocal((c - light_.position) / distance), std::sqrt(1.0F - sine * sine), sine});
-          });
+      visitParts(Triangle{{p[0], p[1], p[2]}}, light_.position, part_angle, 14,
+                 [&](vec3 c, float radius, float distance) {
+                   const float sine = (radius * 1.001F + light_.radius) / std::max(distance, 1e-30F);
+                   if (sine >= 1.0F) {
+                     everything = true;
+                     return;
+                   }
+                   caps.add({frame_.toLocal((c - light_.position) / distance), std::sqrt(1.0F - sine * sine), sine});
+                 });
     });
     if (everything) {
       one_minus_cos_ = 2.0F;
-      caps.assign(1, {vec3(0, 0, 1), -1.0F, 0.0F});
+      markCaps(mask_, one_minus_cos_, {{vec3(0, 0, 1), -1.0F, 0.0F}});
+    } else {
+      markCaps(mask_, one_minus_cos_, caps.caps());
     }
-    markCaps(mask_, one_minus_cos_, caps);
     if (light_.kind == LightKind::kSpot) intersectWithCone();
   }
   /// Unmarks what lies wholly outside a spot's cone.
@@ -392,13 +395,18 @@ EmissionTargets::EmissionTargets(const TraceScene& scene, const std::vector<bool
   visitTriangles([&](const vec3* p) {
     for (int k = 0; k < 3; ++k) bounds_.add(p[k]);
   });
-  buildClusters();
 }
 
-void EmissionTargets::buildClusters() {
+const std::vector<EmissionTargets::Sphere>& EmissionTargets::clusters() const {
+  std::call_once(clusters_built_, [this] { clusters_ = buildClusters(); });
+  return clusters_;
+}
+
+std::vector<EmissionTargets::Sphere> EmissionTargets::buildClusters() const {
+  std::vector<Sphere> clusters;
   std::vector<Triangle> triangles;
   visitTriangles([&](const vec3* p) { triangles.push_back({{p[0], p[1], p[2]}}); });
-  if (triangles.empty()) return;
+  if (triangles.empty()) return clusters;
   struct Range {
     std::size_t begin, end;
   };
@@ -430,8 +438,9 @@ void EmissionTargets::buildClusters() {
     for (std::size_t i = range.begin; i < range.end; ++i)
       for (const vec3& p : triangles[i].p) sphere.radius = std::max(sphere.radius, length(p - sphere.centre));
     sphere.radius *= 1.0001F;
-    clusters_.push_back(sphere);
+    clusters.push_back(sphere);
   }
+  return clusters;
 }
 
 std::vector<std::unique_ptr<Emitter>> makeEmitters(const TraceScene& scene, const MaterialTable& materials,

@@ -12,6 +12,7 @@
 
 #include <cstdint>
 #include <memory>
+#include <mutex>
 #include <string>
 #include <vector>
 
@@ -43,8 +44,8 @@ class EmissionTargets {
     vec3 centre;
     float radius;
   };
-  /// Bounding spheres of clusters of triangles, at most kMaxClusters.
-  const std::vector<Sphere>& clusters() const { return clusters_; }
+  /// Bounding spheres of clusters of triangles, at most kMaxClusters. Built when first asked for: many lights never do.
+  const std::vector<Sphere>& clusters() const;
   /// Calls `visit(corners)` for every target triangle, world space.
   template <class Visit>
   void visitTriangles(Visit&& visit) const {
@@ -59,11 +60,12 @@ class EmissionTargets {
   static constexpr int kMaxClusters = 64;
 
  private:
-  void buildClusters();
+  std::vector<Sphere> buildClusters() const;
   const TraceScene& scene_;
   std::vector<std::uint32_t> instances_;
   Bounds bounds_;
-  std::vector<Sphere> clusters_;
+  mutable std::once_flag clusters_built_;
+  mutable std::vector<Sphere> clusters_;
 };
 
 /// Emits the photons of one light. Immutable; safe from any thread.
