@@ -111,6 +111,9 @@ class SunEmitter final : public Emitter {
     photon.flux = expected_flux_;
     return photon;
   }
+  EmissionExtent extentOf(const EmittedPhoton&) const override {
+    return {static_cast<float>(std::sqrt(area_)), std::sqrt(kPi) * sin_half_angle_};
+  }
 
  private:
   /// Marks the cells of the box [low, high] of the plane whose centres pass `inside`.
@@ -196,6 +199,9 @@ class PointEmitter final : public Emitter {
     }
     photon.flux = intensityAlong(light_, photon.dir) * static_cast<float>(solid_angle_);
     return photon;
+  }
+  EmissionExtent extentOf(const EmittedPhoton&) const override {
+    return {std::sqrt(kPi) * light_.radius, static_cast<float>(std::sqrt(solid_angle_))};
   }
 
  private:
@@ -288,6 +294,13 @@ class MeshEmitter final : public Emitter {
                     static_cast<float>(light_.area * cos_theta * (light_.double_sided ? 2.0 : 1.0) / density);
     return photon;
   }
+  EmissionExtent extentOf(const EmittedPhoton& photon) const override {
+    // Flux over radiance is the volume of phase space; textures are taken at their mean.
+    const float place = static_cast<float>(std::sqrt(light_.area));
+    const float emission = luminance(light_.mean_emission);
+    if (!(emission > 0.0F)) return {};
+    return {place, std::min(std::sqrt(luminance(photon.flux) / emission) / place, std::sqrt(2.0F * kPi))};
+  }
 
  private:
   struct Cone {
@@ -369,6 +382,11 @@ class EnvironmentEmitter final : public Emitter {
       photon.flux =
           map_.radiance(to) * static_cast<float>(kPi * choice_->total() / (static_cast<double>(count) * pdf_dir));
     return photon;
+  }
+  EmissionExtent extentOf(const EmittedPhoton& photon) const override {
+    const float pdf_dir = map_.pdf(-photon.dir);
+    if (!(pdf_dir > 0.0F)) return {};
+    return {static_cast<float>(std::sqrt(kPi * choice_->total())), 1.0F / std::sqrt(pdf_dir)};
   }
 
  private:

@@ -32,6 +32,13 @@ struct EmittedPhoton {
       0.0F};  ///< W, as if one photon were emitted: divide by the emitted count. 0: leaves outside the light's lobe
 };
 
+/// The emission domain about a photon: how far its neighbours would be if it were alone. Squared place × squared
+/// direction is the volume of phase space over which a light spreads one photon.
+struct EmissionExtent {
+  float place = 0.0F;      ///< √area perpendicular to the ray, m; 0 for a light without a size
+  float direction = 0.0F;  ///< √solid angle; 0 for a sun without a size
+};
+
 /// Boxes, spheres and triangles to aim at.
 class EmissionTargets {
  public:
@@ -73,6 +80,8 @@ class Emitter {
  public:
   virtual ~Emitter() = default;
   virtual EmittedPhoton emit(Sampler& sampler) const = 0;
+  /// @param photon  as it was emitted
+  virtual EmissionExtent extentOf(const EmittedPhoton& photon) const = 0;
   /// Flux through the domain, W: exact for punctual lights, estimated from a pilot for the others. For sharing photons
   /// among lights, not for scaling them.
   vec3 expectedFlux() const { return expected_flux_; }

@@ -11,6 +11,7 @@
 #include "core/parallel.h"
 #include "nephroid/error.h"
 #include "techniques/layers.h"
+#include "techniques/reference/estimator.h"
 #include "techniques/reference/geometry_layers.h"
 #include "techniques/reference/path_tracer.h"
 #include "techniques/reference/photon_batch.h"
@@ -39,17 +40,20 @@ class ReferenceRender {
         settings_(settings),
         progress_(progress),
         stop_(stop),
+        estimator_(chooseEstimator(settings.params.getString("estimator"))),
         needs_(settings.layers),
         world_(scene, camera, settings.width, settings.height, makeOptions(settings)),
         film_(settings.width, settings.height, needs_),
         path_tracer_(world_, needs_) {
-    const bool gather = settings.params.getString("specular-caustics") == "photons" && needs_.throughSpecular();
-    if ((world_.options.light_tracing && needs_.lightTraced()) || gather)
-      light_tracer_ = std::make_unique<LightTracer>(
-          world_, world_.options.light_tracing && (needs_.indirect || needs_.irradiance), gather);
+    const bool from_lights = world_.options.light_tracing;
+    const bool gather_direct = estimator_ == Estimator::kPhotonMap && (needs_.caustic || needs_.irradiance_caustic);
+    const bool gather = from_lights && (gather_direct || needs_.throughSpecular());
+    if ((from_lights && needs_.lightTraced()) || gather)
+      light_tracer_ = std::make_unique<LightTracer>(world_, needs_.indirect || needs_.irradiance, gather);
     if (light_tracer_ && light_tracer_->emitters().empty()) light_tracer_.reset();
     gather_ = gather && light_tracer_;
-    if (gather_) path_tracer_.gatherFrom(&caustics_);
+    if (gather_) path_tracer_.gatherFrom(&caustics_, gather_direct);
+    if (light_tracer_ && gather_direct) light_tracer_->leaveCausticsToGathering();
     if (light_tracer_) shareLedgers();
     chooseBudgets();
     addStage("build", secondsSince(start_));
@@ -77,7 +81,7 @@ class ReferenceRender {
     ReferenceOptions options;
     options.specular_alpha = settings.params.getFloat("specular-alpha");
     options.max_bounces = settings.params.getInt("max-bounces");
-    options.light_tracing = settings.params.getString("caustic-estimator") == "light";
+    options.light_tracing = chooseEstimator(settings.params.getString("estimator")) != Estimator::kPath;
     if (const int bands = settings.params.getInt("bands"); bands > 0) options.spectral.bands = makeBands(bands);
     options.seed = foldSeed(settings.seed);
     return options;
@@ -88,7 +92,8 @@ class ReferenceRender {
     constexpr std::uint64_t kUnlimited = std::uint64_t{1} << 62;
     samples_budget_ = settings_.samples ? settings_.samples : timed_only ? kUnlimited : kDefaultSamples;
     photons_budget_ = settings_.photons ? settings_.photons : timed_only ? kUnlimited : kDefaultPhotons;
-    if (!needs_.eyeTraced(world_.options.light_tracing)) samples_budget_ = 0;
+    const bool caustics_from_eye = estimator_ == Estimator::kPath || estimator_ == Estimator::kPhotonMap;
+    if (!needs_.eyeTraced(caustics_from_eye)) samples_budget_ = 0;
     if (!light_tracer_) photons_budget_ = 0;
     if (light_tracer_) makePhotonBatch(photons_budget_ < kUnlimited);
   }
@@ -98,8 +103,10 @@ class ReferenceRender {
     constexpr std::uint64_t kMax = PhotonBatch::kMaxPhotons;
     const std::uint64_t batches = limited ? (photons_budget_ + kMax - 1) / kMax : 1;
     const std::uint64_t photons = limited ? (photons_budget_ + batches - 1) / batches : kMax;
-    const std::size_t pixels = static_cast<std::size_t>(settings_.width) * settings_.height;
-    photon_batch_ = std::make_unique<PhotonBatch>(*light_tracer_, static_cast<std::uint32_t>(photons), pixels);
+    photon_batch_ = std::make_unique<PhotonBatch>(*light_tracer_, static_cast<std::uint32_t>(photons), settings_.width,
+                                                  settings_.height);
+    if (estimator_ == Estimator::kFootprint && needs_.lightTraced())
+      footprints_.apply(world_, *light_tracer_, *photon_batch_);
   }
 
   bool stopped() const { return stop_ && stop_->requested(); }
@@ -164,7 +171,9 @@ class ReferenceRender {
 
   void tracePhotons() {
     if (!photon_batch_->trace(batches_done_, [&] { return stopped(); })) return;
-    photon_batch_->visitSplats([&](const Splat& splat, float scale) { addSplat(splat, scale); });
+    photon_batch_->visitSplats([&](const Splat& splat, std::uint32_t pixel, std::span<const float> weights) {
+      addSplat(splat, pixel, weights);
+    });
     for (const PhotonBatch::Chunk& chunk : photon_batch_->chunks()) {
       ledgers_[chunk.emitter].add(chunk.tally.ledger);
       rays_ += chunk.tally.rays;
@@ -198,9 +207,10 @@ class ReferenceRender {
     caustics_ = radius > 0.0F ? PhotonGrid(deposits, radius) : PhotonGrid();
   }
 
-  void addSplat(const Splat& splat, float scale) {
+  void addSplat(const Splat& splat, std::uint32_t pixel, std::span<const float> weights) {
     const auto addTo = [&](FilmPlane& plane, vec3 value) {
-      if (plane.active()) plane.add(splat.pixel, value * scale);
+      if (!plane.active()) return;
+      for (std::size_t i = 0; i < weights.size(); ++i) plane.add(pixel + i, value * weights[i]);
     };
     addTo(splat.is_caustic ? film_.caustic : film_.indirect, splat.radiance);
     addTo(film_.irradiance, splat.irradiance);
@@ -294,6 +304,7 @@ class ReferenceRender {
     metadata["photons"] = std::to_string(photons_done_);
     for (const ParamSpec& spec : settings_.params.specs())
       metadata["set." + spec.name] = settings_.params.toText(spec.name);
+    describeEstimators(estimator_, needs_, metadata);
     addNotes(result);
   }
 
@@ -301,6 +312,10 @@ class ReferenceRender {
     bool any_delta = false;
     for (const Light& light : world_.scene.scene().lights)
       any_delta = any_delta || (light.kind == LightKind::kSun ? light.angle_deg == 0.0F : light.radius == 0.0F);
+    for (std::size_t e = 0; e < footprints_.overlaps.size(); ++e)
+      result.notes.push_back(
+          fmt::format("caustics of '{}': each photon spread over its footprint, overlap {:g} N^(1/3)",
+                      light_tracer_->emitters()[e]->name(), footprints_.overlaps[e]));
     if (any_delta && (needs_.specular || needs_.specular_caustic))
       result.notes.emplace_back(gather_ || !light_tracer_
                                     ? "light of sources without a size that returns through mirrors or glass after two "
@@ -308,7 +323,7 @@ class ReferenceRender {
                                     : "caustics in mirrors and through glass are missing under lights without a size: "
                                       "give them extras.radius or extras.angle");
     if (any_delta && !world_.options.light_tracing && needs_.caustic)
-      result.notes.emplace_back("caustic-estimator=path finds no caustic of lights without a size");
+      result.notes.emplace_back("estimator=path finds no caustic of lights without a size");
     if (not_finite_ > 0)
       result.notes.push_back(fmt::format("{} path contributions were not finite and were dropped", not_finite_));
   }
@@ -325,11 +340,13 @@ class ReferenceRender {
   const RenderSettings& settings_;
   ProgressSink* progress_;
   const StopToken* stop_;
+  Estimator estimator_;
   LayerNeeds needs_;
   ReferenceWorld world_;
   Film film_;
   PathTracer path_tracer_;
   std::unique_ptr<LightTracer> light_tracer_;
+  FootprintSpread footprints_;
   std::unique_ptr<PhotonBatch> photon_batch_;
   std::vector<Ledger> ledgers_;
   std::vector<Layer> geometry_;
@@ -366,22 +383,7 @@ Technique makeReferenceTechnique() {
   technique.params = {
       makeSpecularAlphaParam(),
       {"max-bounces", 64, 1, 1024, "", "scattering events on a path before it is given up", {}},
-      {"caustic-estimator",
-       std::string("light"),
-       0,
-       0,
-       "",
-       "light: photons connected to the camera; path: paths from the eye alone, for checking (needs lights with a "
-       "size)",
-       {"light", "path"}},
-      {"specular-caustics",
-       std::string("photons"),
-       0,
-       0,
-       "",
-       "caustics in mirrors and through glass: photons (a kernel that shrinks) or path (unbiased; needs lights with a "
-       "size)",
-       {"photons", "path"}},
+      makeEstimatorParam(),
       {"bands", 0, 0, 64, "", "wavelength bands of dispersive light; 0: continuous", {}},
   };
   technique.render = renderReference;
