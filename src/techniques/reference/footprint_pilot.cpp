@@ -13,9 +13,9 @@ constexpr std::uint32_t kPilotPhotons = 1024;
 /// Overlaps that are tried. From 0.1 on, errors of smooth scenes hardly change; at the least, kernels are narrower than
 /// the spacing of photons, and still halve the noise of a finely modelled one.
 constexpr std::array kOverlaps{0.1F, 0.025F, 0.006F, 0.0015F};
-/// Share of neighbours that may end elsewhere: smooth scenes have 1 to 5 %, those at edges; a glass bunny of 59 000
+/// Share of neighbours that may end elsewhere: smooth scenes have 1 to 6 %, those at edges; a glass bunny of 59 000
 /// triangles has 25 % and more.
-constexpr double kMostStraying = 0.06;
+constexpr double kMostStraying = 0.08;
 /// A place and a direction within unit discs, projected to the receiver: no straight footprint reaches farther, in
 /// squared half-axes.
 constexpr float kFarthest = 2.0F;
