@@ -169,11 +169,13 @@ std::optional<BsdfSample> Bsdf::sampleSmooth(float u_lobe, Transport transport) 
   if (u_lobe < p_reflect) {
     s.dir = reflectDir(-wo_, normal_);
     s.weight = reflectance_ / p_reflect;
+    s.probability = p_reflect;
     if (!sameSide(s.dir)) return std::nullopt;
     return s;
   }
   s.transmitted = true;
   s.weight = transmittance_ / (1.0F - p_reflect);
+  s.probability = 1.0F - p_reflect;
   if (material_.is_pane || index_matched_) {
     s.dir = -wo_;
     s.pass = material_.is_pane;
@@ -199,6 +201,7 @@ std::optional<BsdfSample> Bsdf::sampleInterface(vec2 u, float u_lobe, Transport 
   const float p_reflect = luminance(r) / sum;
   const bool reflect = u_lobe < p_reflect;
   BsdfSample s;
+  s.probability = reflect ? p_reflect : 1.0F - p_reflect;
   vec3 wi = reflectDir(-wo_local_, h);
   if (reflect) {
     if (wi.z <= 0.0F) return std::nullopt;

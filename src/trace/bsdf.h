@@ -29,9 +29,10 @@ struct BsdfValue {
 };
 
 struct BsdfSample {
-  vec3 dir;           ///< unit, away from the surface
-  vec3 weight{0.0F};  ///< f·|cos| / pdf within the class
-  float pdf = 0.0F;   ///< per solid angle; 0 if delta
+  vec3 dir;                  ///< unit, away from the surface
+  vec3 weight{0.0F};         ///< f·|cos| / pdf within the class
+  float pdf = 0.0F;          ///< per solid angle; 0 if delta
+  float probability = 1.0F;  ///< with which reflection, or transmission, was chosen of the two
   bool delta = false;
   bool transmitted = false;  ///< through the surface
   bool pass = false;         ///< straight through a pane: no event

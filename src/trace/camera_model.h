@@ -13,6 +13,7 @@ namespace nephroid {
 /// A point as the camera sees it.
 struct CameraConnection {
   int x, y;        ///< pixel
+  vec2 film;       ///< the same as a place, in pixels
   vec3 dir;        ///< unit, from the point to the camera
   float distance;  ///< m, to the eye, or to the picture plane of an orthographic camera
   /// What turns flux·BSDF at the point into the pixel's mean radiance, but for the cosine at the point, 1/m²:
@@ -56,6 +57,7 @@ class CameraModel {
       return std::nullopt;
     CameraConnection c;
     c.x = static_cast<int>(fx), c.y = static_cast<int>(fy);
+    c.film = vec2(fx, fy);
     if (orthographic_) {
       c.dir = -forward_;
       c.distance = depth;
@@ -67,6 +69,17 @@ class CameraModel {
     const float cos_theta = depth / c.distance;
     c.importance = 1.0F / (c.distance * c.distance * pixel_area_ * cos_theta * cos_theta * cos_theta);
     return c;
+  }
+
+  /// How a point that the camera sees moves over the film, in pixels, when it moves by `offset`, to first order.
+  vec2 filmOffset(vec3 position, vec3 offset) const {
+    const vec2 pixels_per_unit =
+        vec2(0.5F * static_cast<float>(width_) / half_width_, -0.5F * static_cast<float>(height_) / half_height_);
+    const vec2 across(dot(offset, right_), dot(offset, up_));
+    if (orthographic_) return pixels_per_unit * across;
+    const vec3 from_eye = position - eye_;
+    const float depth = dot(from_eye, forward_), deeper = dot(offset, forward_) / depth;
+    return pixels_per_unit * (across - deeper * vec2(dot(from_eye, right_), dot(from_eye, up_))) / depth;
   }
 
   float depthOf(vec3 position) const { return dot(position - eye_, forward_); }

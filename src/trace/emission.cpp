@@ -111,6 +111,9 @@ class SunEmitter final : public Emitter {
     photon.flux = expected_flux_;
     return photon;
   }
+  EmissionExtent extentOf(const EmittedPhoton&) const override {
+    return {static_cast<float>(std::sqrt(area_)), std::sqrt(kPi) * sin_half_angle_};
+  }
 
  private:
   /// Marks the cells of the box [low, high] of the plane whose centres pass `inside`.
@@ -197,29 +200,35 @@ class PointEmitter final : public Emitter {
     photon.flux = intensityAlong(light_, photon.dir) * static_cast<float>(solid_angle_);
     return photon;
   }
+  EmissionExtent extentOf(const EmittedPhoton&) const override {
+    return {std::sqrt(kPi) * light_.radius, static_cast<float>(std::sqrt(solid_angle_))};
+  }
 
  private:
   void markTargets(const EmissionTargets& targets) {
-    std::vector<DirectionCap> caps;
     const float cell_angle = std::sqrt(2.0F * kPi * one_minus_cos_) / static_cast<float>(kMaskSize);
+    // Parts need not be much smaller than the light that looks at them.
+    const float light_angle = light_.radius / std::max(length(targets.bounds().centre() - light_.position), 1e-30F);
+    const float part_angle = std::max(4.0F * cell_angle, 0.25F * light_angle);
+    CapMerger caps(std::max(0.25F * cell_angle, 0.15F * light_angle));
     bool everything = false;
     targets.visitTriangles([&](const vec3* p) {
-      visitParts(
-          Triangle{{p[0], p[1], p[2]}}, light_.position, 4.0F * cell_angle, 14,
-          [&](vec3 c, float radius, float distance) {
-            const float sine = (radius * 1.001F + light_.radius) / std::max(distance, 1e-30F);
-            if (sine >= 1.0F) {
-              everything = true;
-              return;
-            }
-            caps.push_back({frame_.toLocal((c - light_.position) / distance), std::sqrt(1.0F - sine * sine), sine});
-          });
+      visitParts(Triangle{{p[0], p[1], p[2]}}, light_.position, part_angle, 14,
+                 [&](vec3 c, float radius, float distance) {
+                   const float sine = (radius * 1.001F + light_.radius) / std::max(distance, 1e-30F);
+                   if (sine >= 1.0F) {
+                     everything = true;
+                     return;
+                   }
+                   caps.add({frame_.toLocal((c - light_.position) / distance), std::sqrt(1.0F - sine * sine), sine});
+                 });
     });
     if (everything) {
       one_minus_cos_ = 2.0F;
-      caps.assign(1, {vec3(0, 0, 1), -1.0F, 0.0F});
+      markCaps(mask_, one_minus_cos_, {{vec3(0, 0, 1), -1.0F, 0.0F}});
+    } else {
+      markCaps(mask_, one_minus_cos_, caps.caps());
     }
-    markCaps(mask_, one_minus_cos_, caps);
     if (light_.kind == LightKind::kSpot) intersectWithCone();
   }
   /// Unmarks what lies wholly outside a spot's cone.
@@ -284,6 +293,13 @@ class MeshEmitter final : public Emitter {
       photon.flux = materials_.emission(point, front) *
                     static_cast<float>(light_.area * cos_theta * (light_.double_sided ? 2.0 : 1.0) / density);
     return photon;
+  }
+  EmissionExtent extentOf(const EmittedPhoton& photon) const override {
+    // Flux over radiance is the volume of phase space; textures are taken at their mean.
+    const float place = static_cast<float>(std::sqrt(light_.area));
+    const float emission = luminance(light_.mean_emission);
+    if (!(emission > 0.0F)) return {};
+    return {place, std::min(std::sqrt(luminance(photon.flux) / emission) / place, std::sqrt(2.0F * kPi))};
   }
 
  private:
@@ -367,6 +383,11 @@ class EnvironmentEmitter final : public Emitter {
           map_.radiance(to) * static_cast<float>(kPi * choice_->total() / (static_cast<double>(count) * pdf_dir));
     return photon;
   }
+  EmissionExtent extentOf(const EmittedPhoton& photon) const override {
+    const float pdf_dir = map_.pdf(-photon.dir);
+    if (!(pdf_dir > 0.0F)) return {};
+    return {static_cast<float>(std::sqrt(kPi * choice_->total())), 1.0F / std::sqrt(pdf_dir)};
+  }
 
  private:
   Bounds bounds_;
@@ -392,13 +413,18 @@ EmissionTargets::EmissionTargets(const TraceScene& scene, const std::vector<bool
   visitTriangles([&](const vec3* p) {
     for (int k = 0; k < 3; ++k) bounds_.add(p[k]);
   });
-  buildClusters();
 }
 
-void EmissionTargets::buildClusters() {
+const std::vector<EmissionTargets::Sphere>& EmissionTargets::clusters() const {
+  std::call_once(clusters_built_, [this] { clusters_ = buildClusters(); });
+  return clusters_;
+}
+
+std::vector<EmissionTargets::Sphere> EmissionTargets::buildClusters() const {
+  std::vector<Sphere> clusters;
   std::vector<Triangle> triangles;
   visitTriangles([&](const vec3* p) { triangles.push_back({{p[0], p[1], p[2]}}); });
-  if (triangles.empty()) return;
+  if (triangles.empty()) return clusters;
   struct Range {
     std::size_t begin, end;
   };
@@ -430,8 +456,9 @@ void EmissionTargets::buildClusters() {
     for (std::size_t i = range.begin; i < range.end; ++i)
       for (const vec3& p : triangles[i].p) sphere.radius = std::max(sphere.radius, length(p - sphere.centre));
     sphere.radius *= 1.0001F;
-    clusters_.push_back(sphere);
+    clusters.push_back(sphere);
   }
+  return clusters;
 }
 
 std::vector<std::unique_ptr<Emitter>> makeEmitters(const TraceScene& scene, const MaterialTable& materials,

@@ -12,6 +12,7 @@
 
 #include <cstdint>
 #include <memory>
+#include <mutex>
 #include <string>
 #include <vector>
 
@@ -31,6 +32,13 @@ struct EmittedPhoton {
       0.0F};  ///< W, as if one photon were emitted: divide by the emitted count. 0: leaves outside the light's lobe
 };
 
+/// The emission domain about a photon: how far its neighbours would be if it were alone. Squared place × squared
+/// direction is the volume of phase space over which a light spreads one photon.
+struct EmissionExtent {
+  float place = 0.0F;      ///< √area perpendicular to the ray, m; 0 for a light without a size
+  float direction = 0.0F;  ///< √solid angle; 0 for a sun without a size
+};
+
 /// Boxes, spheres and triangles to aim at.
 class EmissionTargets {
  public:
@@ -43,8 +51,8 @@ class EmissionTargets {
     vec3 centre;
     float radius;
   };
-  /// Bounding spheres of clusters of triangles, at most kMaxClusters.
-  const std::vector<Sphere>& clusters() const { return clusters_; }
+  /// Bounding spheres of clusters of triangles, at most kMaxClusters. Built when first asked for: many lights never do.
+  const std::vector<Sphere>& clusters() const;
   /// Calls `visit(corners)` for every target triangle, world space.
   template <class Visit>
   void visitTriangles(Visit&& visit) const {
@@ -59,11 +67,12 @@ class EmissionTargets {
   static constexpr int kMaxClusters = 64;
 
  private:
-  void buildClusters();
+  std::vector<Sphere> buildClusters() const;
   const TraceScene& scene_;
   std::vector<std::uint32_t> instances_;
   Bounds bounds_;
-  std::vector<Sphere> clusters_;
+  mutable std::once_flag clusters_built_;
+  mutable std::vector<Sphere> clusters_;
 };
 
 /// Emits the photons of one light. Immutable; safe from any thread.
@@ -71,6 +80,8 @@ class Emitter {
  public:
   virtual ~Emitter() = default;
   virtual EmittedPhoton emit(Sampler& sampler) const = 0;
+  /// @param photon  as it was emitted
+  virtual EmissionExtent extentOf(const EmittedPhoton& photon) const = 0;
   /// Flux through the domain, W: exact for punctual lights, estimated from a pilot for the others. For sharing photons
   /// among lights, not for scaling them.
   vec3 expectedFlux() const { return expected_flux_; }

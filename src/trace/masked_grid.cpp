@@ -39,14 +39,22 @@ DirectionCap boundBlock(const MaskedGrid& grid, float one_minus_cos, int x, int 
   return cap;
 }
 
-void markBlock(MaskedGrid& grid, float one_minus_cos, int x, int y, int size, const std::vector<DirectionCap>& caps) {
-  const DirectionCap block = boundBlock(grid, one_minus_cos, x, y, size);
+/// @param finest  blocks of so many cells along each side are not split any more
+void markBlock(MaskedGrid& grid, float one_minus_cos, int x, int y, int size, int finest,
+               const std::vector<DirectionCap>& caps) {
   // Blocks of more than an eighth of the square bend too much for the bound above: they always split.
   const bool split_always = size > grid.width() / 8;
+  const int half = size / 2;
+  if (split_always) {
+    for (const int dy : {0, half})
+      for (const int dx : {0, half}) markBlock(grid, one_minus_cos, x + dx, y + dy, half, finest, caps);
+    return;
+  }
+  const DirectionCap block = boundBlock(grid, one_minus_cos, x, y, size);
   std::vector<DirectionCap> inside;
   for (const DirectionCap& cap : caps) {
-    if (!split_always && !overlap(block, cap)) continue;
-    if (size == 1 || (!split_always && contains(cap, block))) {
+    if (!overlap(block, cap)) continue;
+    if (size <= finest || contains(cap, block)) {
       for (int j = y; j < y + size; ++j)
         for (int i = x; i < x + size; ++i) grid.mark(i, j);
       return;
@@ -54,9 +62,8 @@ void markBlock(MaskedGrid& grid, float one_minus_cos, int x, int y, int size, co
     inside.push_back(cap);
   }
   if (inside.empty()) return;
-  const int half = size / 2;
   for (const int dy : {0, half})
-    for (const int dx : {0, half}) markBlock(grid, one_minus_cos, x + dx, y + dy, half, inside);
+    for (const int dx : {0, half}) markBlock(grid, one_minus_cos, x + dx, y + dy, half, finest, inside);
 }
 
 }  // namespace
@@ -69,8 +76,32 @@ vec3 capFromSquare(vec2 uv, float one_minus_cos) {
   return {disc.x * stretch, disc.y * stretch, 1.0F - r2 * one_minus_cos};
 }
 
+void CapMerger::add(const DirectionCap& cap) {
+  std::uint64_t place = 0;
+  for (int k = 0; k < 3; ++k)  // of [−1, 1] no more than 2²⁰ steps are told apart
+    place = (place << 21) | static_cast<std::uint64_t>((cap.axis[k] + 1.0F) * std::min(inverse_spacing_, 0x1p19F));
+  const auto [found, is_new] = cap_of_place_.try_emplace(place, caps_.size());
+  if (is_new) {
+    caps_.push_back(cap);
+    return;
+  }
+  DirectionCap& merged = caps_[found->second];
+  if (contains(merged, cap)) return;
+  // As wide as the farther side of the other, and a little more for rounding.
+  const float apart = 2.0F * std::asin(std::min(0.5F * length(cap.axis - merged.axis), 1.0F));
+  const float angle = std::min(apart + std::atan2(cap.sin_angle, cap.cos_angle) + 1e-6F, kPi);
+  if (std::cos(angle) < merged.cos_angle) merged.cos_angle = std::cos(angle), merged.sin_angle = std::sin(angle);
+}
+
 void markCaps(MaskedGrid& grid, float one_minus_cos, const std::vector<DirectionCap>& caps) {
-  markBlock(grid, one_minus_cos, 0, 0, grid.width(), caps);
+  // The border is as coarse as a sixteenth of the smallest cap: finer, and large caps, of which many overlap, take
+  // long.
+  float least_sine = 1.0F;
+  for (const DirectionCap& cap : caps) least_sine = std::min(least_sine, cap.sin_angle);
+  const float cell_angle = std::sqrt(2.0F * kPi * one_minus_cos) / static_cast<float>(grid.width());
+  int finest = 1;
+  while (static_cast<float>(2 * finest) * cell_angle <= 0.0625F * least_sine) finest *= 2;
+  markBlock(grid, one_minus_cos, 0, 0, grid.width(), std::min(finest, grid.width() / 8), caps);
 }
 
 }  // namespace nephroid

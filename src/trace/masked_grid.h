@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cstdint>
+#include <unordered_map>
 #include <vector>
 
 #include "core/math.h"
@@ -103,11 +104,26 @@ class MaskedGrid {
 /// @param one_minus_cos  1 − cos of the cap's half-angle, in (0, 2]; 2 is the whole sphere
 vec3 capFromSquare(vec2 uv, float one_minus_cos);
 
-/// Marks every cell of `grid` that maps into one of `caps` through `capFromSquare`, and few others.
+/// A cone of directions.
 struct DirectionCap {
   vec3 axis;  ///< unit, in the frame of the grid's cap
   float cos_angle, sin_angle;
 };
+/// Takes caps whose axes are nearly the same as one: a fine mesh has far more triangles than there are cells.
+class CapMerger {
+ public:
+  /// @param spacing  axes nearer than this may be one, radians: what a cap may grow by
+  explicit CapMerger(float spacing) : inverse_spacing_(1.0F / spacing) {}
+  void add(const DirectionCap& cap);
+  const std::vector<DirectionCap>& caps() const { return caps_; }
+
+ private:
+  float inverse_spacing_;
+  std::vector<DirectionCap> caps_;
+  std::unordered_map<std::uint64_t, std::size_t> cap_of_place_;
+};
+
+/// Marks every cell of `grid` that maps into one of `caps` through `capFromSquare`, and few others.
 void markCaps(MaskedGrid& grid, float one_minus_cos, const std::vector<DirectionCap>& caps);
 
 }  // namespace nephroid

@@ -302,6 +302,32 @@ void TraceScene::describeSurface(const Ray& ray, const RayHit& hit, SurfacePoint
     point.normal_shading = perturbNormal(placed, point, point.normal_shading);
 }
 
+NormalGradient TraceScene::normalGradientAt(const SurfacePoint& point) const {
+  const Placed& placed = placed_[point.instance];
+  NormalGradient g;
+  if (!placed.smooth) return g;
+  const PackedTriangle& packed = placed.packed[point.triangle];
+  vec3 edge_u = packed.corners[1] - packed.corners[0], edge_v = packed.corners[2] - packed.corners[0];
+  vec3 normals[3];
+  for (int k = 0; k < 3; ++k) normals[k] = PackedTriangle::unpackNormal(packed.normals[k]);
+  if (!placed.baked) {
+    edge_u = mat3(placed.world_from_object) * edge_u, edge_v = mat3(placed.world_from_object) * edge_v;
+    for (vec3& n : normals) n = placed.normal_from_object * n;
+  }
+  // Gradients of u and v are dual to the edges: gradient_u·edge_u = 1, gradient_u·edge_v = 0.
+  const float uu = dot(edge_u, edge_u), uv = dot(edge_u, edge_v), vv = dot(edge_v, edge_v);
+  const float determinant = uu * vv - uv * uv;
+  const vec3 sum = (1.0F - point.u - point.v) * normals[0] + point.u * normals[1] + point.v * normals[2];
+  const float squared = dot(sum, sum);
+  if (determinant <= 0.0F || squared <= 0.0F) return g;
+  g.gradient_u = (vv * edge_u - uv * edge_v) / determinant, g.gradient_v = (uu * edge_v - uv * edge_u) / determinant;
+  const float inverse_length = 1.0F / std::sqrt(squared);
+  g.normal = sum * inverse_length;
+  const auto turn = [&](vec3 change) { return (change - g.normal * dot(g.normal, change)) * inverse_length; };
+  g.turn_u = turn(normals[1] - normals[0]), g.turn_v = turn(normals[2] - normals[0]);
+  return g;
+}
+
 vec3 TraceScene::perturbNormal(const Placed& placed, const SurfacePoint& point, vec3 normal) const {
   const TextureRef& reference = placed.material->normal_texture;
   const Mesh& mesh = *placed.mesh;

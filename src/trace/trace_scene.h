@@ -59,6 +59,15 @@ struct SurfacePoint {
   float u, v;
 };
 
+/// How the interpolated normal turns from point to point of a triangle, world space.
+struct NormalGradient {
+  vec3 normal{0.0F};                        ///< the interpolated one, unit; zero where the triangle is flat
+  vec3 gradient_u{0.0F}, gradient_v{0.0F};  ///< of the barycentric weights, 1/m, in the plane
+  vec3 turn_u{0.0F}, turn_v{0.0F};          ///< change of the unit normal by weight, perpendicular to it
+  /// Change of the normal along a change `dp` of the point, in the plane, m.
+  vec3 along(vec3 dp) const { return dot(gradient_u, dp) * turn_u + dot(gradient_v, dp) * turn_v; }
+};
+
 /// Immutable after construction; all methods are safe to call from any thread.
 /// Keeps a reference to `scene`, which must outlive it and not change.
 class TraceScene {
@@ -88,6 +97,8 @@ class TraceScene {
   }
   /// The same, written to where it is wanted.
   void describeSurface(const Ray& ray, const RayHit& hit, SurfacePoint& point) const;
+  /// What bends a bundle of rays besides their directions. Normal maps are left out.
+  NormalGradient normalGradientAt(const SurfacePoint& point) const;
   /// Texture coordinates of set 0 or 1; zero where the mesh has none.
   vec2 texcoordAt(std::uint32_t instance, std::uint32_t triangle, float u, float v, int set) const;
   vec4 colorAt(std::uint32_t instance, std::uint32_t triangle, float u, float v) const;

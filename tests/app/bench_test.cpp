@@ -31,9 +31,9 @@ TEST(Bench, ReportsMedianAndSpreadAsJson) {
 
 /// The reference against itself, with random numbers of its own: what needs no device.
 std::vector<std::string> errorArguments(std::vector<std::string> more) {
-  std::vector<std::string> arguments{"bench",     "--error",   "builtin:slab", "--technique",
-                                     "reference", "--size",    "24x18",        "--reference-photons",
-                                     "100k",      "--photons", "100k"};
+  std::vector<std::string> arguments{"bench",  "--error", "builtin:slab",        "--technique", "reference",
+                                     "--size", "24x18",   "--reference-photons", "100k",        "--photons",
+                                     "100k",   "--set",   "estimator=light"};
   arguments.insert(arguments.end(), more.begin(), more.end());
   return arguments;
 }
@@ -91,6 +91,59 @@ TEST(BenchError, RefusesOptionsThatWouldDoNothing) {
   const ProcessResult result = runNephroid({"bench", "builtin:ring", "--reference-photons", "100"});
   EXPECT_EQ(result.exit_code, 2);
   EXPECT_THAT(result.err, HasSubstr("--reference-photons is for --error"));
+}
+
+TEST(BenchRace, GivesEachEstimatorACurveWhoseErrorFalls) {
+  const TempFolder folder;
+  const ProcessResult result = runNephroid({"bench", "--race", "builtin:slab", "--size", "32x24", "--reference-photons",
+                                            "200k", "--race-seconds", "0.5", "--set", "estimator=light", "--set",
+                                            "estimator=footprint", "--json", "--svg", folder.file("race.svg")});
+  ASSERT_EQ(result.exit_code, 0) << result.err;
+  const nlohmann::json curves = nlohmann::json::parse(result.out)["results"][0]["curves"];
+  ASSERT_EQ(curves.size(), 2U);
+  EXPECT_EQ(curves[0]["estimator"], "light");
+  EXPECT_EQ(curves[1]["estimator"], "footprint");
+  const nlohmann::json& points = curves[0]["points"];
+  ASSERT_GE(points.size(), 2U);
+  EXPECT_EQ(points[0]["photons"], 32768);
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    EXPECT_EQ(points[i]["photons"], points[0]["photons"].get<std::uint64_t>() << i);
+    EXPECT_GT(points[i]["cpu_s"].get<double>(), 0.0);
+    EXPECT_GT(points[i]["nrmse"].get<double>(), 0.0);
+  }
+  EXPECT_LT(points.back()["l1"].get<double>(), points[0]["l1"].get<double>());
+  const std::string svg = readText(folder.file("race.svg"));
+  EXPECT_THAT(svg, StartsWith("<svg "));
+  EXPECT_THAT(svg, HasSubstr(">footprint</text>"));
+}
+
+TEST(BenchRace, ComparesWithAReferenceUnderAMask) {
+  const TempFolder folder;
+  const std::string truth = folder.file("truth.exr");
+  ASSERT_EQ(runNephroid({"render", "builtin:slab", "-o", truth, "--size", "32x24", "--aov", "direct,caustic",
+                         "--samples", "43", "--photons", "32768", "--set", "estimator=light"})
+                .exit_code,
+            0);
+  const std::vector<std::string> race{"bench", "--race", "builtin:slab",    "--size", "32x24",       "--race-seconds",
+                                      "0.001", "--set",  "estimator=light", "--json", "--reference", truth};
+  const ProcessResult result = runNephroid(race);
+  ASSERT_EQ(result.exit_code, 0) << result.err;
+  // The same seed, photons and samples (32768 photons over 768 pixels, rounded up): the very picture.
+  EXPECT_EQ(nlohmann::json::parse(result.out)["results"][0]["curves"][0]["points"][0]["nrmse"], 0.0);
+  std::vector<std::string> masked = race;
+  masked.insert(masked.end(), {"--mask", folder.file("none.png")});
+  EXPECT_EQ(runNephroid(masked).exit_code, 3);
+}
+
+TEST(BenchRace, RefusesOptionsThatWouldDoNothing) {
+  for (const std::vector<std::string>& arguments : std::vector<std::vector<std::string>>{
+           {"bench", "--race", "builtin:slab", "--photons", "1k"},
+           {"bench", "--race", "builtin:slab", "--repeats", "2"},
+           {"bench", "--race", "builtin:slab", "--error"},
+           {"bench", "--race", "builtin:slab", "--technique", "caustic-map"},
+           {"bench", "--race", "builtin:slab", "builtin:ring", "--reference", "a.exr"},
+           {"bench", "builtin:slab", "--svg", "a.svg"}})
+    EXPECT_EQ(runNephroid(arguments).exit_code, 2) << arguments.back();
 }
 
 }  // namespace

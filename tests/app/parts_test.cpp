@@ -12,6 +12,7 @@
 #include "app/cli/memory.h"
 #include "app/cli/options.h"
 #include "app/cli/picture.h"
+#include "app/cli/plot_svg.h"
 #include "app/cli/progress_bar.h"
 #include "app/cli/terminal.h"
 #include "nephroid/error.h"
@@ -216,6 +217,30 @@ TEST(DisplayLayer, GivesNeighbouringIdsDistinctColours) {
   EXPECT_EQ(id.rgb(0, 0), vec3(0));
   EXPECT_GT(length(id.rgb(1, 0) - id.rgb(2, 0)), 0.1F);
   EXPECT_GT(length(id.rgb(2, 0) - id.rgb(3, 0)), 0.1F);
+}
+
+TEST(DrawPlots, PlacesPowersOfTenOnTheGridAndLeavesOutWhatHasNoLogarithm) {
+  const PlotPanel panel{"a <scene>", "s", "L1", {{"one", {{1.0, 0.1}, {10.0, 0.01}, {2.0, 0.0}, {-1.0, 0.5}}}}};
+  const std::string svg = drawPlots({{panel}});
+  EXPECT_THAT(svg, HasSubstr("a &lt;scene&gt;"));
+  // The axes are one decade each, so the points are the corners: from the upper left to the lower right.
+  EXPECT_THAT(svg, HasSubstr("<polyline points=\"54.0,28.0 288.0,198.0 \""));
+  std::size_t circles = 0;
+  for (std::size_t at = svg.find("<circle"); at != std::string::npos; at = svg.find("<circle", at + 1)) ++circles;
+  EXPECT_EQ(circles, 2U);
+}
+
+TEST(DrawPlots, GivesACurveOfOneNameOneColour) {
+  const PlotPanel first{"1", "s", "L1", {{"a", {{1.0, 1.0}}}, {"b", {{2.0, 2.0}}}}},
+      second{"2", "s", "L1", {{"b", {{1.0, 1.0}}}}};
+  const std::string svg = drawPlots({{first, second}});
+  const auto countOf = [&](const std::string& text) {
+    int count = 0;
+    for (std::size_t at = svg.find(text); at != std::string::npos; at = svg.find(text, at + 1)) ++count;
+    return count;
+  };
+  EXPECT_EQ(countOf("stroke=\"#0072b2\""), 2);  // a curve and its line in the legend
+  EXPECT_EQ(countOf("stroke=\"#d55e00\""), 3);  // two curves
 }
 
 }  // namespace

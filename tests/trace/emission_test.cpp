@@ -72,6 +72,21 @@ TEST(SunEmission, BringsTheBallItsCrossSection) {
   }
 }
 
+TEST(EmissionExtent, TimesRadianceIsFlux) {
+  for (const bool sun : {false, true}) {
+    SceneData data = makeBall();
+    data.lights.push_back(sun ? test::makeSun(vec3(1, -2, 0.3F), vec3(10.0F), 10.0F)
+                              : test::makePoint(vec3(1, 2, 6), vec3(5.0F), 0.3F));
+    const Aim aim(std::move(data));
+    Sampler sampler(1, 1, 0);
+    const EmittedPhoton photon = aim.emitters.at(0)->emit(sampler);
+    const EmissionExtent extent = aim.emitters.at(0)->extentOf(photon);
+    const float radiance = sun ? sunRadiance(aim.data.lights[0]).x : 5.0F / (kPi * 0.09F);
+    EXPECT_NEAR(extent.place * extent.place * extent.direction * extent.direction * radiance, photon.flux.x,
+                1e-4F * photon.flux.x);
+  }
+}
+
 TEST(PointEmission, BringsTheBallItsSolidAngle) {
   for (const float radius : {0.0F, 0.3F}) {
     SceneData data = makeBall();

@@ -85,5 +85,29 @@ TEST(MarkCaps, CoversEveryDirectionOfTheCap) {
   }
 }
 
+TEST(CapMerger, CoversWhatItMerges) {
+  std::mt19937 random(11);
+  std::uniform_real_distribution<float> uniform(-0.2F, 0.2F);
+  CapMerger merger(0.02F);
+  std::vector<DirectionCap> caps;
+  for (int i = 0; i < 5000; ++i) {
+    const float angle = 0.02F + 0.1F * std::abs(uniform(random));
+    caps.push_back({normalize(vec3(uniform(random), uniform(random), 1)), std::cos(angle), std::sin(angle)});
+    merger.add(caps.back());
+  }
+  EXPECT_LT(merger.caps().size(), 1500U);
+  for (const DirectionCap& cap : caps) {
+    // Points of its border.
+    const Frame frame = Frame::fromZ(cap.axis);
+    for (int k = 0; k < 8; ++k) {
+      const float phi = static_cast<float>(k) * kPi / 4.0F;
+      const vec3 d = frame.toWorld(vec3(cap.sin_angle * std::cos(phi), cap.sin_angle * std::sin(phi), cap.cos_angle));
+      EXPECT_TRUE(std::any_of(merger.caps().begin(), merger.caps().end(),
+                              [&](const DirectionCap& m) { return dot(m.axis, d) >= m.cos_angle - 1e-6F; }));
+    }
+  }
+  for (const DirectionCap& merged : merger.caps()) EXPECT_GT(merged.cos_angle, std::cos(0.04F + 0.02F * 1.8F));
+}
+
 }  // namespace
 }  // namespace nephroid

@@ -110,6 +110,29 @@ TEST_P(Placement, PacketsOfAnySizeMeetWhatSingleRaysMeet) {
 
 INSTANTIATE_TEST_SUITE_P(All, Placement, testing::Combine(testing::Bool(), testing::Bool()));
 
+TEST_P(Placement, NormalGradientIsTheChangeOfTheNormal) {
+  const auto [instanced, mirrored] = GetParam();
+  SceneData data;
+  mat4 placed = glm::scale(mat4(1.0F), vec3(mirrored ? -1.3F : 1.3F, 0.8F, 1.1F));
+  test::addObject(data, makeSphere("ball", dvec3(0), 1.0, 32), makeGlass(1.5F), placed);
+  if (instanced) data.instances.push_back(data.instances[0]);
+  const TraceScene scene(data);
+  int checked = 0;
+  for (int i = 0; i < 50; ++i) {
+    const vec3 from(0.03F * static_cast<float>(i) - 0.7F, 5.0F, 0.21F);
+    RayHit hit, near;
+    const Ray ray{from, vec3(0, -1, 0)}, beside{from + vec3(1e-3F, 0, 2e-3F), vec3(0, -1, 0)};
+    if (!scene.intersect(ray, hit) || !scene.intersect(beside, near) || near.triangle != hit.triangle) continue;
+    const SurfacePoint a = scene.surfaceAt(ray, hit), b = scene.surfaceAt(beside, near);
+    const NormalGradient gradient = scene.normalGradientAt(a);
+    EXPECT_LT(length(gradient.normal - a.normal_shading), 1e-5F);
+    const vec3 change = b.normal_shading - a.normal_shading;
+    EXPECT_LT(length(gradient.along(b.position - a.position) - change), 0.02F * length(change) + 2e-6F);
+    ++checked;
+  }
+  EXPECT_GT(checked, 20);
+}
+
 TEST(TraceScene, NewRaysDoNotMeetTheirOwnSurfaceAtAnyScale) {
   for (const float scale : {1e-3F, 1.0F, 1e3F}) {
     SceneData data;

@@ -7,6 +7,7 @@
 #include <thread>
 
 #include "app/cli/bench_error.h"
+#include "app/cli/bench_race.h"
 #include "app/cli/bench_speed.h"
 #include "app/cli/command.h"
 #include "app/cli/embedded.h"
@@ -14,6 +15,7 @@
 #include "app/cli/stop.h"
 #include "app/cli/technique_options.h"
 #include "app/cli/terminal.h"
+#include "core/file.h"
 #include "nephroid/nephroid.h"
 
 namespace nephroid::cli {
@@ -25,7 +27,9 @@ constexpr const char* kExamples = R"(Examples:
   nephroid bench
   nephroid bench builtin:ring glass.glb --repeats 11 --json
   nephroid bench --error
-  nephroid bench --error builtin:ring --technique caustic-map --set grid=512 --reference-photons 200M)";
+  nephroid bench --error builtin:ring --technique caustic-map --set grid=512 --reference-photons 200M
+  nephroid bench --race builtin:ring --svg race.svg
+  nephroid bench --race cup.glb --reference truth.exr --mask floor.png --set estimator=footprint)";
 
 constexpr int kMaxRepeats = 1000;
 
@@ -34,19 +38,21 @@ struct BenchOptions {
   std::string only_technique;
   TechniqueOptions technique;
   int warmup = 1, repeats = 5;
-  bool error = false;
+  bool error = false, race = false;
+  double race_seconds = 20;
+  std::string reference, mask, svg;
   std::uint64_t reference_photons = 0;
   bool json = false;
 };
 
-/// What bench/scenes.json has for one of the two kinds of benchmark.
+/// What bench/scenes.json has for one of the kinds of benchmark.
 struct Defaults {
   Size size;
   std::uint64_t samples = 0, photons = 0, reference_photons = 0;
   std::vector<std::string> scenes;
 };
 
-/// @param kind  "speed" or "error"
+/// @param kind  "speed", "error" or "race"
 Defaults readDefaults(const char* kind) {
   const Json list = Json::parse(kBenchScenes)[kind];
   const auto count = [&](const char* key) { return parseCount(key, list.value(key, "0")); };
@@ -56,7 +62,7 @@ Defaults readDefaults(const char* kind) {
 
 /// Gives what the command line leaves open the value that it has for this kind of benchmark.
 void completeOptions(BenchOptions& options, const CLI::App& app) {
-  const Defaults defaults = readDefaults(options.error ? "error" : "speed");
+  const Defaults defaults = readDefaults(options.race ? "race" : options.error ? "error" : "speed");
   if (options.scenes.empty()) options.scenes = defaults.scenes;
   if (!isGiven(app, "--size")) options.technique.size = defaults.size;
   if (!isGiven(app, "--samples")) options.technique.samples = defaults.samples;
@@ -64,14 +70,26 @@ void completeOptions(BenchOptions& options, const CLI::App& app) {
   if (!isGiven(app, "--reference-photons")) options.reference_photons = defaults.reference_photons;
 }
 
-/// @throws UsageError for an option of the other kind of benchmark: it would do nothing
+/// @throws UsageError for an option of another kind of benchmark: it would do nothing
 void checkOptions(const BenchOptions& options, const CLI::App& app) {
-  if (!options.error && isGiven(app, "--reference-photons"))
-    throw UsageError("--reference-photons is for --error: speed is measured without a reference");
-  for (const char* name : {"--warmup", "--repeats"})
-    if (options.error && isGiven(app, name))
-      throw UsageError(fmt::format("{} is for speed: with --error each technique renders once", name));
-  if (options.error && options.reference_photons < 2)
+  const auto refuse = [&](std::initializer_list<const char*> names, const std::string& why) {
+    for (const char* name : names)
+      if (isGiven(app, name)) throw UsageError(fmt::format("{} {}", name, why));
+  };
+  if (options.error && options.race) throw UsageError("--error and --race are two benchmarks: one at a time");
+  if (!options.error && !options.race)
+    refuse({"--reference-photons"}, "is for --error and --race: speed is measured without a reference");
+  if (!options.race) refuse({"--race-seconds", "--reference", "--mask", "--svg"}, "is for --race");
+  if (options.error) refuse({"--warmup", "--repeats"}, "is for speed: with --error each technique renders once");
+  if (options.race) {
+    refuse({"--warmup", "--repeats"}, "is for speed: with --race each estimator renders once for each point");
+    refuse({"--photons", "--samples", "--seconds"}, "is not for --race, whose renders have more and more of both");
+    if (!options.only_technique.empty() && options.only_technique != "reference")
+      throw UsageError("--race is run by the estimators of the technique 'reference'");
+    if (!options.reference.empty() && options.scenes.size() != 1)
+      throw UsageError("--reference is of one scene: name that scene alone");
+  }
+  if ((options.error || options.race) && options.reference_photons < 2)
     throw UsageError("--reference-photons: expected 2 or more: the reference is two renders of half of them");
 }
 
@@ -89,7 +107,7 @@ int threadCount(const TechniqueOptions& options) {
 Json describeRun(const BenchOptions& options) {
   const TechniqueOptions& technique = options.technique;
   Json run{{"version", version()}, {"cpu", readCpuModel()}, {"threads", threadCount(technique)}};
-  if (options.error) {
+  if (options.error || options.race) {
     run["reference_photons"] = options.reference_photons;
   } else {
     run["warmup"] = options.warmup;
@@ -158,20 +176,34 @@ void benchError(const BenchOptions& options, Json& results) {
   }
 }
 
+void benchRace(const BenchOptions& options, Json& results) {
+  const RaceOptions race{options.technique, options.reference, options.mask, options.reference_photons,
+                         options.race_seconds};
+  std::vector<RaceResult> done;
+  for (const std::string& scene : options.scenes) {
+    done.push_back(runRace(scene, race));
+    results.push_back(raceToJson(done.back()));
+    if (!options.json) writeStdout(formatRace(done.back()));
+    if (options.svg.empty()) continue;
+    const std::string drawing = drawRace(done);
+    writeFileAtomically(options.svg, std::as_bytes(std::span(drawing)));
+  }
+}
+
 ExitCode runBench(BenchOptions options, const CLI::App& app) {
   checkOptions(options, app);
   completeOptions(options, app);
   Json run = describeRun(options);
   try {
-    (options.error ? benchError : benchSpeed)(options, run["results"]);
+    (options.race ? benchRace : options.error ? benchError : benchSpeed)(options, run["results"]);
   } catch (const InterruptedError&) {  // what was measured before is whole, and is told
   }
   if (options.json) writeStdout(run.dump(2) + "\n");
   return stopToken().requested() ? ExitCode::kInterrupted : ExitCode::kDone;
 }
 
-/// What --help says of the defaults of both kinds.
-TechniqueDefaults describeBothDefaults() {
+/// What --help says of the defaults of all kinds.
+TechniqueDefaults describeAllDefaults() {
   TechniqueOptions speed, error;
   const auto apply = [](TechniqueOptions& options, const Defaults& defaults) {
     options.size = defaults.size, options.samples = defaults.samples, options.photons = defaults.photons;
@@ -181,25 +213,28 @@ TechniqueDefaults describeBothDefaults() {
   const auto both = [](const std::string& first, const std::string& second) {
     return fmt::format("{}, with --error {}", first, second);
   };
-  return {both("all", "all that draw caustics in real time"), both(a.size, b.size), both(a.photons, b.photons),
-          both(a.samples, b.samples)};
+  const Size race = readDefaults("race").size;
+  return {both("all", "all that draw caustics in real time"),
+          fmt::format("{}, with --race {}x{}", both(a.size, b.size), race.width, race.height),
+          both(a.photons, b.photons), both(a.samples, b.samples)};
 }
 
 }  // namespace
 
 Command addBenchCommand(CLI::App& root) {
   const auto options = std::make_shared<BenchOptions>();
-  const Defaults speed = readDefaults("speed"), error = readDefaults("error");
+  const Defaults speed = readDefaults("speed"), error = readDefaults("error"), race = readDefaults("race");
   options->reference_photons = error.reference_photons;
   CLI::App* app = addCommand(root, "bench",
-                             "Measure speed and memory of each technique on each scene, or its error against the "
-                             "reference.",
+                             "Measure speed and memory of each technique on each scene, its error against the "
+                             "reference, or the error over CPU time of the reference's own estimators.",
                              kExamples);
-  addArguments(
-      *app, "SCENES", options->scenes, "SCENE",
-      {"Scenes, as for render.",
-       fmt::format("{}; with --error {}", fmt::join(speed.scenes, " "), fmt::join(error.scenes, " ")), "", ""});
-  addTechniqueOptions(*app, options->technique, options->only_technique, describeBothDefaults());
+  addArguments(*app, "SCENES", options->scenes, "SCENE",
+               {"Scenes, as for render.",
+                fmt::format("{}; with --error {}; with --race {}", fmt::join(speed.scenes, " "),
+                            fmt::join(error.scenes, " "), fmt::join(race.scenes, " ")),
+                "", ""});
+  addTechniqueOptions(*app, options->technique, options->only_technique, describeAllDefaults());
   addValue(*app, "--warmup", options->warmup, "N",
            {"Renders before the measured ones.", "1", fmt::format("0 to {}", kMaxRepeats), ""},
            checkNumber(0, kMaxRepeats));
@@ -209,9 +244,25 @@ Command addBenchCommand(CLI::App& root) {
   addSwitch(*app, "--error", options->error,
             "Instead of speed, tell how far the caustics of each technique are from the reference's: relMSE, FLIP, "
             "energy, and the share of flux that was lost.");
-  addCount(*app, "--reference-photons", options->reference_photons,
-           {"With --error: photons of the reference; the table shows what their noise makes of each figure.",
-            fmt::format("{}", error.reference_photons), "2 to 9e15", "photons"});
+  addSwitch(*app, "--race", options->race,
+            "Instead of speed, let the estimators of the technique 'reference' race: nRMSE, L1 and relMSE of direct + "
+            "caustic over the CPU time that it took from the scene to the finished file.");
+  addValue(*app, "--race-seconds", options->race_seconds, "S",
+           {"With --race: no render is begun that would take longer.", "20", "0.001 to 1e7", "CPU s"},
+           checkNumber(1e-3, 1e7));
+  addCount(
+      *app, "--reference-photons", options->reference_photons,
+      {"With --error and --race: photons of the reference; with --error the table shows what their noise makes of "
+       "each figure.",
+       fmt::format("{}, with --race {}", error.reference_photons, race.reference_photons), "2 to 9e15", "photons"});
+  addValue(
+      *app, "--reference", options->reference, "FILE",
+      {"With --race and one scene: a picture to compare with, whose layers direct and caustic are added, or beauty "
+       "is taken where it lacks them.",
+       "one of --reference-photons by light tracing", "", ""});
+  addValue(*app, "--mask", options->mask, "FILE",
+           {"With --race: a PNG of the same size; pixels of value 255 count.", "all", "", ""});
+  addValue(*app, "--svg", options->svg, "FILE", {"With --race: also draws the curves.", "none", "*.svg", ""});
   addSwitch(*app, "--json", options->json, "Print JSON, with every value.");
   return {app, [options, app] { return runBench(*options, *app); }};
 }

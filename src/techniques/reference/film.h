@@ -45,8 +45,9 @@ struct LayerNeeds {
   /// Must paths from the eye follow a first specular event?
   bool throughSpecular() const { return specular || specular_caustic || specular_caustic_bias; }
   /// What paths from the eye must be traced for.
-  bool eyeTraced(bool light_tracing) const {
-    const bool caustics_too = !light_tracing && (caustic || irradiance_caustic);
+  /// @param caustics_from_eye  those that are seen directly as well
+  bool eyeTraced(bool caustics_from_eye) const {
+    const bool caustics_too = caustics_from_eye && (caustic || irradiance_caustic);
     return emission || direct || indirect || irradiance || throughSpecular() || caustics_too;
   }
   /// What photons must be traced for.

@@ -21,11 +21,20 @@ void CameraConnections::flush() {
     splat.radiance *= visible[i];
     splat.irradiance *= visible[i];
     if (isFinite(splat.radiance) && isFinite(splat.irradiance))
-      tally_.splats.push_back(splat);
+      keep(splat, footprints_[i]);
     else
       ++tally_.not_finite;
   }
   count_ = 0;
+}
+
+void CameraConnections::keep(const Splat& splat, std::optional<FootprintSplat>& footprint) {
+  if (footprint) footprint->splat = splat;
+  if (footprint && (!view_ || normalizeFootprint(*view_, *footprint))) {
+    tally_.footprints.push_back(*footprint);
+  } else {
+    tally_.splats.push_back(splat);
+  }
 }
 
 LightPath::LightPath(const LightPathContext& context, const Emitter& emitter, const EmittedPhoton& photon,
@@ -35,7 +44,9 @@ LightPath::LightPath(const LightPathContext& context, const Emitter& emitter, co
       sampler_(sampler),
       state_{Ray{photon.origin, photon.dir}, emitter.interior()},
       flux_(photon.flux),
-      emitted_(photon.flux) {
+      emitted_(photon.flux),
+      footprint_(context.spread.cell > 0.0F ? emitter.extentOf(photon) : EmissionExtent{}, photon.dir) {
+  if (context.spread.cell <= 0.0F) footprint_.lose();
   depart();
 }
 
@@ -43,6 +54,7 @@ void LightPath::arrive(const RayHit& hit) {
   const Walker& walker = context_->world.walker;
   if (!walker.arrive(state_, sampler_, encounter_, hit)) return;
   context_->tally.rays += encounter_.rays;
+  if (encounter_.hit) footprint_.transfer(state_.ray.dir, encounter_.distance, encounter_.point);
   alive_ = endStep() && scatter();
   ++bounce_;
   if (alive_) depart();
@@ -118,7 +130,7 @@ bool LightPath::scatter() {
       if (context_->keep_deposits)
         context_->tally.deposits.push_back({encounter_.point.position, state_.ray.dir, weighted});
     }
-    connectToCamera(bsdf, wo);
+    if (context_->connect_caustics || stage_ != Stage::kSpecularChain) connectToCamera(bsdf, wo);
   }
   return continueWith(bsdf, specular_share, wo);
 }
@@ -169,13 +181,24 @@ bool LightPath::scatterSpecular(const Bsdf& bsdf, vec3 carried, float p_class) {
   }
   flux_ = unweighted;
   if (!s->pass && stage_ == Stage::kEmitted) stage_ = Stage::kSpecularChain;
+  bendFootprint(*s, p_class);
   return leave(*s);
+}
+
+void LightPath::bendFootprint(const BsdfSample& s, float p_class) {
+  if (!footprint_.valid()) return;
+  footprint_.choose(p_class * s.probability);
+  const float ior_from = iorOf(encounter_.boundary.from, state_.wavelength_nm);
+  const float ior_to = iorOf(encounter_.boundary.to, state_.wavelength_nm);
+  footprint_.bend(context_->world.scene, encounter_.point, state_.ray.dir, s.dir, s.transmitted,
+                  encounter_.material->is_solid ? ior_from / ior_to : 1.0F);
 }
 
 bool LightPath::scatterDiffuse(const Bsdf& bsdf, float p_class, vec3 wo) {
   const vec2 u = sampler_.next2D();
   const auto s = bsdf.sample(EventClass::kDiffuse, u, sampler_.next1D(), Transport::kFlux);
   stage_ = Stage::kAfterDiffuse;
+  footprint_.lose();
   if (!s) return false;
   // Flux arrives on the true surface and leaves from it; the BSDF counts both cosines on the shaded one.
   const float leaving = bsdf.shadingCosineRatio(s->dir);
@@ -227,8 +250,15 @@ void LightPath::connectToCamera(const Bsdf& bsdf, vec3 wo) {
   const Ray line{offsetOrigin(encounter_.point, c->dir), c->dir, c->distance};
   const float scale = std::abs(cos_camera) * bsdf.shadingCosineRatio(wo) * c->importance;
   const vec3 irradiance = same_side ? flux() * scale : vec3(0.0F);
-  context_->connections.add({line, medium}, {static_cast<std::uint32_t>(c->y * camera.width() + c->x),
-                                             stage_ == Stage::kSpecularChain, flux() * value.f * scale, irradiance});
+  const Splat splat{static_cast<std::uint32_t>(c->y * camera.width() + c->x), stage_ == Stage::kSpecularChain,
+                    flux() * value.f * scale, irradiance};
+  // What varies over the surface would be blurred: there, a photon counts for its own pixel.
+  const bool varies = encounter_.material == &encounter_.scratch;
+  if (varies || !footprint_.valid())
+    context_->connections.add({line, medium}, splat);
+  else
+    context_->connections.add({line, medium}, splat,
+                              makeFootprintSplat(footprint_, context_->spread, camera, encounter_.point, c->film));
 }
 
 }  // namespace nephroid

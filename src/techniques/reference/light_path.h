@@ -2,8 +2,11 @@
 #pragma once
 
 #include <array>
+#include <optional>
 #include <vector>
 
+#include "techniques/reference/footprint.h"
+#include "techniques/reference/footprint_splat.h"
 #include "techniques/reference/photon_tally.h"
 #include "techniques/reference/world.h"
 #include "trace/bsdf.h"
@@ -13,21 +16,30 @@ namespace nephroid {
 /// Splats that wait for their lines to the camera to be traced, several at once.
 class CameraConnections {
  public:
-  CameraConnections(const Walker& walker, PhotonTally& tally) : walker_(walker), tally_(tally) {}
+  /// @param view  over which footprints are spread; null: they are kept as they are
+  CameraConnections(const Walker& walker, const ReceiverView* view, PhotonTally& tally)
+      : walker_(walker), view_(view), tally_(tally) {}
   /// @param splat  as if nothing were between
-  void add(const Sightline& line, const Splat& splat) {
+  void add(const Sightline& line, const Splat& splat) { add(line, splat, std::nullopt); }
+  /// @param footprint  of the same splat
+  void add(const Sightline& line, const Splat& splat, const std::optional<FootprintSplat>& footprint) {
     lines_[count_] = line;
     splats_[count_] = splat;
+    footprints_[count_] = footprint;
     if (++count_ == TraceScene::kPacketSize) flush();
   }
   void flush();
 
  private:
+  void keep(const Splat& splat, std::optional<FootprintSplat>& footprint);
+
   const Walker& walker_;
+  const ReceiverView* view_;
   PhotonTally& tally_;
   std::size_t count_ = 0;
   std::array<Sightline, TraceScene::kPacketSize> lines_;
   std::array<Splat, TraceScene::kPacketSize> splats_;
+  std::array<std::optional<FootprintSplat>, TraceScene::kPacketSize> footprints_;
 };
 
 /// What the photons of one run share.
@@ -36,6 +48,8 @@ struct LightPathContext {
   const std::vector<bool>& is_target;  ///< by instance
   bool continue_after_diffuse;
   bool keep_deposits;
+  bool connect_caustics;  ///< L S⁺ D E; what follows on it is always connected
+  FootprintScale spread;  ///< of footprints; of caustics, never of what they light in turn
   PhotonTally& tally;
   CameraConnections& connections;
 };
@@ -62,6 +76,7 @@ class LightPath {
   bool scatter();
   bool continueWith(const Bsdf& bsdf, vec3 specular_share, vec3 wo);
   bool scatterSpecular(const Bsdf& bsdf, vec3 carried, float p_class);
+  void bendFootprint(const BsdfSample& s, float p_class);
   bool scatterDiffuse(const Bsdf& bsdf, float p_class, vec3 wo);
   bool leave(const BsdfSample& s);
   bool survives();
@@ -78,6 +93,7 @@ class LightPath {
   vec3 flux_;  ///< without the weight of its wavelengths
   vec3 emitted_;
   dvec3 roulette_{0.0};
+  Footprint footprint_;
 };
 
 }  // namespace nephroid

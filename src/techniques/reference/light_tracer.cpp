@@ -99,13 +99,31 @@ void LightTracer::emit(std::size_t emitter, std::uint32_t begin, std::uint32_t e
 }
 
 void LightTracer::trace(std::size_t emitter, const PhotonWave& wave, std::uint32_t begin, std::uint32_t end,
-                        PhotonTally& tally) const {
-  CameraConnections connections(world_.walker, tally);
-  const LightPathContext context{world_, is_target_, continue_after_diffuse_, keep_deposits_, tally, connections};
+                        const FootprintScale& spread, PhotonTally& tally) const {
+  CameraConnections connections(world_.walker, view_, tally);
+  const LightPathContext context{world_,         is_target_,        continue_after_diffuse_,
+                                 keep_deposits_, connect_caustics_, view_ ? spread : FootprintScale{},
+                                 tally,          connections};
   GroupTracer group(context, *emitters_[emitter]);
   for (std::size_t i = begin; i < end; i += kGroupPhotons)
     group.trace(wave, i, std::min<std::size_t>(i + kGroupPhotons, end));
   connections.flush();
+}
+
+std::optional<FootprintSplat> LightTracer::findLanding(std::size_t emitter, const PhotonWave::Photon& photon,
+                                                       const FootprintScale& spread) const {
+  PhotonTally tally;
+  CameraConnections connections(world_.walker, nullptr, tally);
+  const LightPathContext context{world_, is_target_, false, false, true, spread, tally, connections};
+  LightPath path(context, *emitters_[emitter], photon.emitted, photon.sampler);
+  while (path.alive()) {
+    RayHit hit;
+    if (!world_.scene.intersect(path.ray(), hit)) hit.instance = kNone;
+    path.arrive(hit);
+  }
+  connections.flush();
+  if (tally.footprints.empty()) return std::nullopt;
+  return tally.footprints.front();
 }
 
 }  // namespace nephroid

@@ -8,9 +8,11 @@
 
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <span>
 #include <vector>
 
+#include "techniques/reference/footprint_splat.h"
 #include "techniques/reference/photon_tally.h"
 #include "techniques/reference/photon_wave.h"
 #include "techniques/reference/world.h"
@@ -20,8 +22,10 @@ namespace nephroid {
 class LightTracer {
  public:
   /// @param continue_after_diffuse  also trace what a caustic lights in turn
-  /// @param keep_deposits           list where caustic photons end, for those who look at it through glass
+  /// @param keep_deposits           list where caustic photons end, for those who gather them
   LightTracer(const ReferenceWorld& world, bool continue_after_diffuse, bool keep_deposits = false);
+  /// From now on caustics (L S⁺ D E) are left to those who gather deposits; what they light in turn is not.
+  void leaveCausticsToGathering() { connect_caustics_ = false; }
 
   std::span<const std::unique_ptr<Emitter>> emitters() const { return emitters_; }
   /// Photons of a batch for each emitter, by flux, at least one each; sums to `total` or a little more.
@@ -30,16 +34,27 @@ class LightTracer {
 
   /// Emits photons [begin, end) of a wave of an emitter, counted from the wave's first.
   void emit(std::size_t emitter, std::uint32_t begin, std::uint32_t end, PhotonWave& wave, PhotonTally& tally) const;
-  /// Traces photons [begin, end) of the order of a wave.
+  /// From now on caustic photons may be spread over what pixels see of their receivers; `view` must outlive the tracer.
+  void spreadOver(const ReceiverView* view) { view_ = view; }
+  /// As the function of this name, for the picture of the view.
+  FootprintScale scaleFootprints(float overlap, std::uint32_t photons, std::uint64_t batch) const {
+    return nephroid::scaleFootprints(overlap, photons, batch,
+                                     static_cast<std::size_t>(view_->width()) * view_->height());
+  }
+  /// Traces photons [begin, end) of the order of a wave. @param spread  needs a view to be spread over
   void trace(std::size_t emitter, const PhotonWave& wave, std::uint32_t begin, std::uint32_t end,
-             PhotonTally& tally) const;
+             const FootprintScale& spread, PhotonTally& tally) const;
+  /// Where one photon, traced alone, is first seen to end, not normalised; nothing if it is not or has no footprint.
+  std::optional<FootprintSplat> findLanding(std::size_t emitter, const PhotonWave::Photon& photon,
+                                            const FootprintScale& spread) const;
   bool anyTarget() const { return !targets_->empty(); }
 
  private:
   Sampler samplerOf(std::size_t emitter, std::uint64_t photon) const;
 
   const ReferenceWorld& world_;
-  bool continue_after_diffuse_, keep_deposits_;
+  bool continue_after_diffuse_, keep_deposits_, connect_caustics_ = true;
+  const ReceiverView* view_ = nullptr;
   std::vector<bool> is_target_;
   std::unique_ptr<EmissionTargets> targets_;
   std::vector<std::unique_ptr<Emitter>> emitters_;

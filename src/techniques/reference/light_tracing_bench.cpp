@@ -45,7 +45,7 @@ std::vector<Ray> recordRays(ReferenceWorld& world, const LightTracer& tracer, st
     wave.close(sorted);
     const std::uint32_t step = sorted ? wave.size() : 1;
     world.scene.setRecorder(&rays);
-    for (std::uint32_t i = 0; i < wave.size(); i += step) tracer.trace(e, wave, i, i + step, tally);
+    for (std::uint32_t i = 0; i < wave.size(); i += step) tracer.trace(e, wave, i, i + step, FootprintScale{}, tally);
     world.scene.setRecorder(nullptr);
   }
   return rays;
@@ -67,7 +67,7 @@ LightTracingMeasurement measureLightTracing(const SceneData& scene, const Camera
   const std::vector<Ray> by_photon = recordRays(world, tracer, shares, false);
   const std::vector<Ray> sorted = recordRays(world, tracer, shares, true);
   m.rays = sorted.size();
-  PhotonBatch batch(tracer, photons, std::size_t{kWidth} * kHeight);
+  PhotonBatch batch(tracer, photons, kWidth, kHeight);
   const auto trace = [&] { batch.trace(0, [] { return false; }); };
   const auto rate = [&](auto&& work) { return static_cast<double>(m.rays) / secondsOf(work); };
   volatile std::uint64_t keep = 0;

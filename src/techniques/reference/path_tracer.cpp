@@ -25,11 +25,12 @@ float powerHeuristic(float pdf, float other) {
 /// One path on its way from the eye.
 class EyePath {
  public:
-  EyePath(const ReferenceWorld& world, const LayerNeeds& needs, const PhotonGrid* caustics, Film& film,
-          PathCounters& counters, std::size_t pixel, Sampler sampler)
+  EyePath(const ReferenceWorld& world, const LayerNeeds& needs, const PhotonGrid* caustics, bool gather_direct,
+          Film& film, PathCounters& counters, std::size_t pixel, Sampler sampler)
       : world_(world),
         needs_(needs),
         caustics_(caustics),
+        gather_direct_(gather_direct),
         film_(film),
         counters_(counters),
         pixel_(pixel),
@@ -80,7 +81,8 @@ class EyePath {
     if (!bsdf.isClear()) settleWavelength(state_, encounter_);
     for (const EventClass c : {EventClass::kSpecular, EventClass::kDiffuse})
       if (bsdf.isEvaluable(c) && isWanted(class_.with(c))) connectToLight(bsdf, c);
-    if (caustics_ && class_.isEyeSpecular() && bsdf.hasDiffuse()) gatherCaustic(bsdf);
+    const bool gathers = class_.isEyeSpecular() || (gather_direct_ && class_.count() == 0);
+    if (caustics_ && gathers && bsdf.hasDiffuse()) gatherCaustic(bsdf);
     return sampleNext(bsdf);
   }
 
@@ -88,7 +90,7 @@ class EyePath {
   void gatherCaustic(const Bsdf& bsdf) {
     const SurfacePoint& point = encounter_.point;
     const float radius = caustics_->radius();
-    vec3 radiance(0.0F), inner(0.0F);  // W·m⁻²·sr⁻¹ × area of the kernel; `inner`: of half of its area
+    vec3 radiance(0.0F), irradiance(0.0F), inner(0.0F);  // times the kernel's area; `inner`: radiance of half of it
     caustics_->visitNear(point.position, [&](const GridPhoton& photon) {
       const vec3 wi = -photon.dir, offset = photon.position - point.position;
       const float off_plane = std::abs(dot(offset, point.normal_geometric));
@@ -98,13 +100,18 @@ class EyePath {
           photon.flux * bsdf.evaluate(EventClass::kDiffuse, wi, Transport::kRadiance).f * bsdf.shadingCosineRatio(wi);
       radiance += value;
       if (dot(offset, offset) <= 0.5F * radius * radius) inner += value;
+      // As for light that is connected to the camera: on the side that the eye sees.
+      if (dot(wi, point.normal_geometric) * dot(state_.ray.dir, point.normal_geometric) < 0.0F)
+        irradiance += photon.flux * bsdf.shadingCosineRatio(wi);
     });
-    const vec3 scale = throughput_ / (kPi * radius * radius);
-    add(class_.with(EventClass::kDiffuse).with(EventClass::kSpecular), scale * radiance, vec3(0.0F), true);
+    const float inverse_area = 1.0F / (kPi * radius * radius);
+    add(class_.with(EventClass::kDiffuse).with(EventClass::kSpecular), throughput_ * radiance * inverse_area,
+        class_.count() == 0 ? irradiance * inverse_area : vec3(0.0F), true);
+    if (!film_.specular_caustic_bias.active() || !class_.isEyeSpecular()) return;
     // Where light varies smoothly a kernel errs in proportion to its area (Knaus & Zwicker 2011), so by twice what the
     // whole says more than its half.
-    const vec3 bias = 2.0F * state_.hero.weight * scale * (radiance - 2.0F * inner);
-    if (film_.specular_caustic_bias.active() && isFinite(bias)) film_.specular_caustic_bias.add(pixel_, bias);
+    const vec3 bias = 2.0F * state_.hero.weight * throughput_ * inverse_area * (radiance - 2.0F * inner);
+    if (isFinite(bias)) film_.specular_caustic_bias.add(pixel_, bias);
   }
 
   /// Can a path that begins with these events still end in a layer that was asked for?
@@ -204,8 +211,10 @@ class EyePath {
   }
 
   void add(const PathClass& path, vec3 radiance, vec3 irradiance, bool gathered = false) {
-    if (world_.options.light_tracing && path.isLightTraced()) return;
-    if (caustics_ && path.isSpecularCaustic() && !gathered) return;
+    if (!gathered) {
+      if (world_.options.light_tracing && path.isLightTraced()) return;
+      if (caustics_ && path.isSpecularCaustic()) return;
+    }
     radiance *= state_.hero.weight;
     irradiance *= state_.hero.weight;
     if (!isFinite(radiance) || !isFinite(irradiance)) {
@@ -240,6 +249,7 @@ class EyePath {
   const ReferenceWorld& world_;
   const LayerNeeds& needs_;
   const PhotonGrid* caustics_;
+  bool gather_direct_;
   Film& film_;
   PathCounters& counters_;
   std::size_t pixel_;
@@ -261,7 +271,7 @@ void PathTracer::tracePath(int x, int y, std::uint32_t sample, Film& film, PathC
   const auto pixel = static_cast<std::size_t>(y) * film.width + x;
   Sampler sampler(world_.options.seed, static_cast<std::uint32_t>(pixel), sample);
   const vec2 jitter = sampler.next2D();
-  EyePath path(world_, needs_, caustics_, film, counters, pixel, sampler);
+  EyePath path(world_, needs_, caustics_, gather_direct_, film, counters, pixel, sampler);
   path.trace(vec2(static_cast<float>(x), static_cast<float>(y)) + jitter);
 }
 

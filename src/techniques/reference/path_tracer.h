@@ -26,7 +26,11 @@ class PathTracer {
   PathTracer(const ReferenceWorld& world, const LayerNeeds& needs) : world_(world), needs_(needs) {}
   /// From now on L S⁺ D S⁺ E is gathered from these photons (flux in W) and not looked for by chance; `grid` must
   /// outlive the paths and may be empty.
-  void gatherFrom(const PhotonGrid* grid) { caustics_ = grid; }
+  /// @param direct_too  L S⁺ D E as well
+  void gatherFrom(const PhotonGrid* grid, bool direct_too) {
+    caustics_ = grid;
+    gather_direct_ = direct_too;
+  }
   /// One path through pixel (x, y), added to the film. Safe from any thread as long as no two share a pixel.
   void tracePath(int x, int y, std::uint32_t sample, Film& film, PathCounters& counters) const;
 
@@ -34,6 +38,7 @@ class PathTracer {
   const ReferenceWorld& world_;
   const LayerNeeds& needs_;
   const PhotonGrid* caustics_ = nullptr;
+  bool gather_direct_ = false;
 };
 
 }  // namespace nephroid

@@ -11,19 +11,21 @@ namespace {
 /// Photons of one task: long enough to make scheduling cheap, short enough to stop promptly.
 constexpr std::uint32_t kChunkPhotons = 4096;
 /// Bands of the picture into which splats are summed in parallel.
-constexpr std::size_t kSplatBands = 16;
+constexpr int kSplatBands = 16;
 
 }  // namespace
 
-PhotonBatch::PhotonBatch(const LightTracer& tracer, std::uint32_t photons, std::size_t pixels)
+PhotonBatch::PhotonBatch(const LightTracer& tracer, std::uint32_t photons, int width, int height)
     : tracer_(tracer),
       shares_(tracer.sharePhotons(photons)),
-      band_pixels_((pixels + kSplatBands - 1) / kSplatBands),
+      width_(width),
+      height_(height),
+      band_rows_((height + kSplatBands - 1) / kSplatBands),
       waves_(shares_.size()) {}
 
 bool PhotonBatch::trace(std::uint64_t batch, const std::function<bool()>& stopped) {
   chunks_.clear();
-  return emit(batch, stopped) && follow(stopped);
+  return emit(batch, stopped) && follow(batch, stopped);
 }
 
 template <class Work>
@@ -58,31 +60,58 @@ bool PhotonBatch::emit(std::uint64_t batch, const std::function<bool()>& stopped
   return true;
 }
 
-bool PhotonBatch::follow(const std::function<bool()>& stopped) {
+bool PhotonBatch::follow(std::uint64_t batch, const std::function<bool()>& stopped) {
   const std::size_t first = chunks_.size();
   for (std::size_t e = 0; e < waves_.size(); ++e) addChunks(e, waves_[e].size());
   return runChunks(first, stopped, [&](Chunk& c) {
-    tracer_.trace(c.emitter, waves_[c.emitter], c.begin, c.end, c.tally);
+    const FootprintScale spread =
+        view_ ? tracer_.scaleFootprints(overlaps_[c.emitter], shares_[c.emitter], batch) : FootprintScale{};
+    tracer_.trace(c.emitter, waves_[c.emitter], c.begin, c.end, spread, c.tally);
     sortByBand(c);
+    sortFootprints(c);
   });
 }
 
 void PhotonBatch::sortByBand(Chunk& chunk) const {
   // Counting sort: stable, so that the sums keep the order of the photons.
   std::vector<Splat>& splats = chunk.tally.splats;
-  for (const Splat& splat : splats) ++chunk.band_begin[splat.pixel / band_pixels_ + 1];
-  for (std::size_t band = 0; band < kSplatBands; ++band) chunk.band_begin[band + 1] += chunk.band_begin[band];
+  const std::uint32_t band_pixels = static_cast<std::uint32_t>(band_rows_) * static_cast<std::uint32_t>(width_);
+  for (const Splat& splat : splats) ++chunk.band_begin[splat.pixel / band_pixels + 1];
+  for (int band = 0; band < kSplatBands; ++band) chunk.band_begin[band + 1] += chunk.band_begin[band];
   std::vector<std::uint32_t> next(chunk.band_begin.begin(), chunk.band_begin.end() - 1);
   std::vector<Splat> sorted(splats.size());
-  for (const Splat& splat : splats) sorted[next[splat.pixel / band_pixels_]++] = splat;
+  for (const Splat& splat : splats) sorted[next[splat.pixel / band_pixels]++] = splat;
   splats = std::move(sorted);
 }
 
-void PhotonBatch::visitSplats(const std::function<void(const Splat&, float scale)>& add) const {
+void PhotonBatch::sortFootprints(Chunk& chunk) const {
+  chunk.footprints_of_band.assign(kSplatBands, {});
+  const std::vector<FootprintSplat>& footprints = chunk.tally.footprints;
+  for (std::uint32_t i = 0; i < footprints.size(); ++i) {
+    const int first = std::max(firstRowOf(footprints[i]), 0) / band_rows_;
+    const int last = std::min(lastRowOf(footprints[i]), height_ - 1) / band_rows_;
+    for (int band = first; band <= last; ++band) chunk.footprints_of_band[static_cast<std::size_t>(band)].push_back(i);
+  }
+}
+
+void PhotonBatch::visitSplats(
+    const std::function<void(const Splat&, std::uint32_t pixel, std::span<const float> weights)>& add) const {
   parallelFor(kSplatBands, [&](std::size_t band) {
-    for (const Chunk& chunk : chunks_)
+    const int first_row = static_cast<int>(band) * band_rows_, end_row = std::min(first_row + band_rows_, height_);
+    for (const Chunk& chunk : chunks_) {
+      const float scale = scaleOf(chunk);
       for (std::uint32_t s = chunk.band_begin[band]; s < chunk.band_begin[band + 1]; ++s)
-        add(chunk.tally.splats[s], scaleOf(chunk));
+        add(chunk.tally.splats[s], chunk.tally.splats[s].pixel, {&scale, 1});
+      if (chunk.footprints_of_band.empty()) continue;
+      for (const std::uint32_t f : chunk.footprints_of_band[band]) {
+        FootprintSplat footprint = chunk.tally.footprints[f];
+        footprint.weight_scale *= scale;
+        visitFootprint(*view_, footprint, first_row, end_row, [&](const FootprintRow& row) {
+          add(footprint.splat, static_cast<std::uint32_t>(row.y * width_ + row.x_first),
+              {row.weights.data(), static_cast<std::size_t>(row.x_end - row.x_first)});
+        });
+      }
+    }
   });
 }
 

@@ -18,12 +18,28 @@ struct Splat {
   vec3 irradiance;  ///< W/m² × emitted count
 };
 
+/// The same, spread over an ellipse of pixels (see footprint_splat.h).
+struct FootprintSplat {
+  Splat splat;                         ///< as if the photon's own pixel took all
+  vec2 film;                           ///< centre, pixels
+  vec2 reach;                          ///< half-width and half-height, pixels
+  float xx, xy, yy;                    ///< r² = xx·dx² + 2·xy·dx·dy + yy·dy²
+  int steps;                           ///< points along each side of a pixel
+  std::uint32_t instance;              ///< on which the photon ended
+  vec3 normal;                         ///< of the plane there
+  float plane;                         ///< normal · position, m
+  float thickness;                     ///< how far off the plane a pixel's surface may be, m
+  float weight_scale;                  ///< makes all weights sum to one
+  float place_share, direction_share;  ///< of the light's extent, and of its directions, over which it is spread
+};
+
 /// What a run of photons left behind.
 struct PhotonTally {
   Ledger ledger;  ///< sums of flux × emitted count
   std::uint64_t rays = 0;
   std::uint64_t not_finite = 0;
   std::vector<Splat> splats;
+  std::vector<FootprintSplat> footprints;
   std::vector<GridPhoton> deposits;  ///< caustic photons where they ended, if they are kept; flux × emitted count
 };
 

@@ -19,6 +19,7 @@
 #include "techniques/layers.h"
 #include "techniques/reference/checkpoint.h"
 #include "techniques/reference/error_estimate.h"
+#include "techniques/reference/estimator.h"
 #include "techniques/reference/geometry_layers.h"
 #include "techniques/reference/path_tracer.h"
 #include "techniques/reference/photon_batch.h"
@@ -74,19 +75,22 @@ class ReferenceRender {
         progress_(progress),
         stop_(stop),
         camera_(camera),
+        estimator_(chooseEstimator(settings.params.getString("estimator"))),
         needs_(settings.layers),
         world_(scene, camera, settings.width, settings.height, makeOptions(settings)),
         film_(settings.width, settings.height, needs_),
         errors_(film_, layersWithError(settings)),
         path_tracer_(world_, needs_),
         row_done_(static_cast<std::size_t>(settings.height), 0) {
-    const bool gather = settings.params.getString("specular-caustics") == "photons" && needs_.throughSpecular();
-    if ((world_.options.light_tracing && needs_.lightTraced()) || gather)
-      light_tracer_ = std::make_unique<LightTracer>(
-          world_, world_.options.light_tracing && (needs_.indirect || needs_.irradiance), gather);
+    const bool from_lights = world_.options.light_tracing;
+    const bool gather_direct = estimator_ == Estimator::kPhotonMap && (needs_.caustic || needs_.irradiance_caustic);
+    const bool gather = from_lights && (gather_direct || needs_.throughSpecular());
+    if ((from_lights && needs_.lightTraced()) || gather)
+      light_tracer_ = std::make_unique<LightTracer>(world_, needs_.indirect || needs_.irradiance, gather);
     if (light_tracer_ && light_tracer_->emitters().empty()) light_tracer_.reset();
     gather_ = gather && light_tracer_;
-    if (gather_) path_tracer_.gatherFrom(&caustics_);
+    if (gather_) path_tracer_.gatherFrom(&caustics_, gather_direct);
+    if (light_tracer_ && gather_direct) light_tracer_->leaveCausticsToGathering();
     if (light_tracer_) shareLedgers();
     if (settings.target_error > 0.0 && errors_.empty())
       throw UsageError("a target error needs a layer that converges, such as beauty; those asked for are exact");
@@ -124,7 +128,7 @@ class ReferenceRender {
     ReferenceOptions options;
     options.specular_alpha = settings.params.getFloat("specular-alpha");
     options.max_bounces = settings.params.getInt("max-bounces");
-    options.light_tracing = settings.params.getString("caustic-estimator") == "light";
+    options.light_tracing = chooseEstimator(settings.params.getString("estimator")) != Estimator::kPath;
     if (const int bands = settings.params.getInt("bands"); bands > 0) options.spectral.bands = makeBands(bands);
     options.seed = foldSeed(settings.seed);
     return options;
@@ -136,7 +140,8 @@ class ReferenceRender {
     constexpr std::uint64_t kUnlimited = std::uint64_t{1} << 62;
     samples_budget_ = settings_.samples ? settings_.samples : open_ended ? kUnlimited : kDefaultSamples;
     photons_budget_ = settings_.photons ? settings_.photons : open_ended ? kUnlimited : kDefaultPhotons;
-    if (!needs_.eyeTraced(world_.options.light_tracing)) samples_budget_ = 0;
+    const bool caustics_from_eye = estimator_ == Estimator::kPath || estimator_ == Estimator::kPhotonMap;
+    if (!needs_.eyeTraced(caustics_from_eye)) samples_budget_ = 0;
     if (!light_tracer_) photons_budget_ = 0;
     if (light_tracer_) makePhotonBatch(chooseBatchPhotons(photons_budget_ < kUnlimited));
     error_batch_passes_ = std::clamp<std::uint64_t>(samples_budget_ / kErrorBatches, 1, kErrorBatchPasses);
@@ -151,9 +156,10 @@ class ReferenceRender {
     return static_cast<std::uint32_t>((photons_budget_ + batches - 1) / batches);
   }
   void makePhotonBatch(std::uint32_t photons) {
-    const std::size_t pixels = static_cast<std::size_t>(settings_.width) * settings_.height;
     batch_photons_ = photons;
-    photon_batch_ = std::make_unique<PhotonBatch>(*light_tracer_, photons, pixels);
+    photon_batch_ = std::make_unique<PhotonBatch>(*light_tracer_, photons, settings_.width, settings_.height);
+    if (estimator_ == Estimator::kFootprint && needs_.lightTraced())
+      footprints_.apply(world_, *light_tracer_, *photon_batch_);
   }
 
   bool stopped() const { return stop_ && stop_->requested(); }
@@ -241,7 +247,9 @@ class ReferenceRender {
 
   void tracePhotons() {
     if (!photon_batch_->trace(batches_done_, [&] { return stopped(); })) return;
-    photon_batch_->visitSplats([&](const Splat& splat, float scale) { addSplat(splat, scale); });
+    photon_batch_->visitSplats([&](const Splat& splat, std::uint32_t pixel, std::span<const float> weights) {
+      addSplat(splat, pixel, weights);
+    });
     for (const PhotonBatch::Chunk& chunk : photon_batch_->chunks()) {
       ledgers_[chunk.emitter].add(chunk.tally.ledger);
       light_rays_ += chunk.tally.rays;
@@ -287,9 +295,10 @@ class ReferenceRender {
     caustics_ = radius > 0.0F ? PhotonGrid(deposits, radius) : PhotonGrid();
   }
 
-  void addSplat(const Splat& splat, float scale) {
+  void addSplat(const Splat& splat, std::uint32_t pixel, std::span<const float> weights) {
     const auto addTo = [&](FilmPlane& plane, vec3 value) {
-      if (plane.active()) plane.add(splat.pixel, value * scale);
+      if (!plane.active()) return;
+      for (std::size_t i = 0; i < weights.size(); ++i) plane.add(pixel + i, value * weights[i]);
     };
     addTo(splat.is_caustic ? film_.caustic : film_.indirect, splat.radiance);
     addTo(film_.irradiance, splat.irradiance);
@@ -439,6 +448,7 @@ class ReferenceRender {
       metadata["estimated_relmse." + layer] = fmt::format("{:.4g}", errors_.relMse(layer).total());
     for (const ParamSpec& spec : settings_.params.specs())
       metadata["set." + spec.name] = settings_.params.toText(spec.name);
+    describeEstimators(estimator_, needs_, metadata);
     addNotes(result);
   }
 
@@ -446,6 +456,10 @@ class ReferenceRender {
     bool any_delta = false;
     for (const Light& light : world_.scene.scene().lights)
       any_delta = any_delta || (light.kind == LightKind::kSun ? light.angle_deg == 0.0F : light.radius == 0.0F);
+    for (std::size_t e = 0; e < footprints_.overlaps.size(); ++e)
+      result.notes.push_back(
+          fmt::format("caustics of '{}': each photon spread over its footprint, overlap {:g} N^(1/3)",
+                      light_tracer_->emitters()[e]->name(), footprints_.overlaps[e]));
     if (any_delta && needs_.throughSpecular())
       result.notes.emplace_back(gather_ || !light_tracer_
                                     ? "light of sources without a size that returns through mirrors or glass after two "
@@ -453,7 +467,7 @@ class ReferenceRender {
                                     : "caustics in mirrors and through glass are missing under lights without a size: "
                                       "give them extras.radius or extras.angle");
     if (any_delta && !world_.options.light_tracing && needs_.caustic)
-      result.notes.emplace_back("caustic-estimator=path finds no caustic of lights without a size");
+      result.notes.emplace_back("estimator=path finds no caustic of lights without a size");
     if (!errors_.empty() && errors_.batches() < 2)
       result.notes.emplace_back("standard errors are infinite: they take two batches at least; raise the budget");
     if (needs_.specular_caustic_bias && !gather_)
@@ -475,12 +489,14 @@ class ReferenceRender {
   ProgressSink* progress_;
   const StopToken* stop_;
   Camera camera_;
+  Estimator estimator_;
   LayerNeeds needs_;
   ReferenceWorld world_;
   Film film_;
   ErrorEstimate errors_;
   PathTracer path_tracer_;
   std::unique_ptr<LightTracer> light_tracer_;
+  FootprintSpread footprints_;
   std::unique_ptr<PhotonBatch> photon_batch_;
   std::vector<Ledger> ledgers_;
   std::vector<Layer> geometry_;
@@ -520,22 +536,7 @@ Technique makeReferenceTechnique() {
   technique.params = {
       makeSpecularAlphaParam(),
       {"max-bounces", 64, 1, 1024, "", "scattering events on a path before it is given up", {}},
-      {"caustic-estimator",
-       std::string("light"),
-       0,
-       0,
-       "",
-       "light: photons connected to the camera; path: paths from the eye alone, for checking (needs lights with a "
-       "size)",
-       {"light", "path"}},
-      {"specular-caustics",
-       std::string("photons"),
-       0,
-       0,
-       "",
-       "caustics in mirrors and through glass: photons (a kernel that shrinks) or path (unbiased; needs lights with a "
-       "size)",
-       {"photons", "path"}},
+      makeEstimatorParam(),
       {"bands", 0, 0, 64, "", "wavelength bands of dispersive light; 0: continuous", {}},
   };
   technique.render = renderReference;

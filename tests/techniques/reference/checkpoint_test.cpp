@@ -97,7 +97,7 @@ TEST(Checkpoint, OfAPassThatWasCutShortKeepsItsRows) {
   const testing::ScratchFolder folder;
   const SceneData scene = makeScene();
   RenderSettings settings = makeSettings(96, 24, 0, {"direct", "specular"});
-  settings.params.set("specular-caustics", "path");
+  settings.params.set("estimator", "path");
   const RenderResult whole = test::renderReference(scene, scene.cameras[0], settings);
   settings.checkpoint.path = (folder / "rows").string();
   settings.threads = 2;

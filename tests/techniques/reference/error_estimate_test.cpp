@@ -171,7 +171,7 @@ TEST(KernelBias, IsWhatTheKernelTakesFromAPeak) {
     return test::meanOf(*renderReference(scene, camera, settings).image.find(layer)).y;
   };
   RenderSettings paths = makeSettings(8, 16384, 0, {"specular_caustic"});
-  paths.params.set("specular-caustics", "path");
+  paths.params.set("estimator", "path");
   const double truth = meanOf(paths, "specular_caustic");
   // Few photons, so that the kernel is wide.
   RenderSettings photons = makeSettings(8, 32, 16 * 1024, {"specular_caustic", "specular_caustic_bias"});

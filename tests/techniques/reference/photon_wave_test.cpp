@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <numeric>
+
 #include <cmath>
 #include <memory>
 
@@ -72,7 +74,7 @@ class PhotonBatchTest : public testing::Test {
 };
 
 TEST_F(PhotonBatchTest, GivesEveryEmittedWattToTheLedgersOnce) {
-  PhotonBatch batch(*tracer_, 20000, kPixels);
+  PhotonBatch batch(*tracer_, 20000, kSize, kSize);
   ASSERT_TRUE(batch.trace(0, [] { return false; }));
   Ledger sum;
   for (const PhotonBatch::Chunk& chunk : batch.chunks()) sum.add(chunk.tally.ledger);
@@ -83,11 +85,14 @@ TEST_F(PhotonBatchTest, GivesEveryEmittedWattToTheLedgersOnce) {
 }
 
 TEST_F(PhotonBatchTest, VisitsEverySplatInTheOrderOfItsPhoton) {
-  PhotonBatch batch(*tracer_, 20000, kPixels);
+  PhotonBatch batch(*tracer_, 20000, kSize, kSize);
   ASSERT_TRUE(batch.trace(0, [] { return false; }));
   std::vector<std::vector<float>> by_pixel(kPixels), expected(kPixels);
-  batch.visitSplats(
-      [&](const Splat& splat, float scale) { by_pixel[splat.pixel].push_back(splat.radiance.x * scale); });
+  batch.visitSplats([&](const Splat& splat, std::uint32_t pixel, std::span<const float> weights) {
+    EXPECT_EQ(pixel, splat.pixel);
+    ASSERT_EQ(weights.size(), 1U);
+    by_pixel[pixel].push_back(splat.radiance.x * weights[0]);
+  });
   std::size_t count = 0;
   for (const PhotonBatch::Chunk& chunk : batch.chunks()) {
     for (const Splat& splat : chunk.tally.splats)
@@ -98,8 +103,29 @@ TEST_F(PhotonBatchTest, VisitsEverySplatInTheOrderOfItsPhoton) {
   EXPECT_EQ(by_pixel, expected);
 }
 
+TEST_F(PhotonBatchTest, SpreadsEveryFootprintOverAllBandsThatItMeets) {
+  const ReceiverView view(*world_);
+  tracer_->spreadOver(&view);
+  PhotonBatch batch(*tracer_, 20000, kSize, kSize);
+  batch.spreadOver(&view, {1.0F, 1.0F});
+  ASSERT_TRUE(batch.trace(0, [] { return false; }));
+  std::vector<double> by_pixel(kPixels);
+  batch.visitSplats([&](const Splat& splat, std::uint32_t pixel, std::span<const float> weights) {
+    for (const float weight : weights) by_pixel[pixel++] += splat.irradiance.x * weight;
+  });
+  double expected = 0.0;
+  std::size_t spread = 0;
+  for (const PhotonBatch::Chunk& chunk : batch.chunks()) {
+    for (const Splat& splat : chunk.tally.splats) expected += splat.irradiance.x * batch.scaleOf(chunk);
+    for (const FootprintSplat& f : chunk.tally.footprints) expected += f.splat.irradiance.x * batch.scaleOf(chunk);
+    spread += chunk.tally.footprints.size();
+  }
+  EXPECT_GT(spread, 1000U);
+  EXPECT_NEAR(std::accumulate(by_pixel.begin(), by_pixel.end(), 0.0), expected, 1e-5 * expected);
+}
+
 TEST_F(PhotonBatchTest, SaysThatItWasStopped) {
-  PhotonBatch batch(*tracer_, 20000, kPixels);
+  PhotonBatch batch(*tracer_, 20000, kSize, kSize);
   EXPECT_FALSE(batch.trace(0, [] { return true; }));
 }
 

@@ -106,6 +106,16 @@ void expectAgreement(const std::vector<std::vector<double>>& a, const std::vecto
   EXPECT_LT(std::sqrt(total_variance) / total_a, 0.05 / kBound);
 }
 
+/// Of an estimator that blurs: each block within a share of the mean over all, and the whole more nearly.
+void expectNear(const std::vector<std::vector<double>>& a, const std::vector<std::vector<double>>& b, double of_block,
+                double of_whole) {
+  double total_a = 0, total_b = 0;
+  for (std::size_t i = 0; i < a.size(); ++i) total_a += momentsOf(a[i]).mean, total_b += momentsOf(b[i]).mean;
+  for (std::size_t i = 0; i < a.size(); ++i)
+    EXPECT_NEAR(momentsOf(a[i]).mean, momentsOf(b[i]).mean, of_block * total_b / static_cast<double>(b.size())) << i;
+  EXPECT_NEAR(total_a, total_b, of_whole * total_b);
+}
+
 class Estimators : public testing::TestWithParam<const char*> {
  protected:
   static Material material() {
@@ -134,12 +144,27 @@ class Estimators : public testing::TestWithParam<const char*> {
 TEST_P(Estimators, LightTracingAndPathTracingAgree) {
   const SceneData scene = makeLampScene(material());
   RenderSettings from_lights = makeSettings(16, 1, 1 << 14, {"irradiance_caustic"});
+  from_lights.params.set("estimator", "light");
   // A varnish returns 4 %: it takes more paths to see that well.
   const bool weak = std::string(GetParam()) == "varnish";
   RenderSettings from_eye = makeSettings(16, weak ? 1024 : 256, 0, {"irradiance_caustic"});
-  from_eye.params.set("caustic-estimator", "path");
+  from_eye.params.set("estimator", "path");
   expectAgreement(blockMeans(scene, from_lights, "irradiance_caustic"),
                   blockMeans(scene, from_eye, "irradiance_caustic"));
+}
+
+TEST_P(Estimators, FootprintsAndPhotonMapsAgreeWithLightTracing) {
+  const SceneData scene = makeLampScene(material());
+  RenderSettings light = makeSettings(16, 1, 1 << 16, {"irradiance_caustic"});
+  RenderSettings footprint = light, photon_map = makeSettings(16, 8, 1 << 16, {"irradiance_caustic"});
+  light.params.set("estimator", "light");
+  footprint.params.set("estimator", "footprint");
+  photon_map.params.set("estimator", "photon-map");
+  const auto expected = blockMeans(scene, light, "irradiance_caustic");
+  // Both blur, the less the more photons there are; on pictures of 16 × 16, whose blocks are four pixels wide, it
+  // shows.
+  expectNear(blockMeans(scene, footprint, "irradiance_caustic"), expected, 0.1, 0.02);
+  expectNear(blockMeans(scene, photon_map, "irradiance_caustic"), expected, 0.1, 0.02);
 }
 
 INSTANTIATE_TEST_SUITE_P(Materials, Estimators,
@@ -153,7 +178,7 @@ TEST(Reference, IndirectLightAgreesBetweenEstimators) {
   addObject(with_wall, makeRectangle("wall", dvec3(-3, 2, 0), dvec3(0, 2, 0), dvec3(0, 0, 3)), makeDiffuse(vec3(0.8F)));
   RenderSettings from_lights = makeSettings(16, 64, 1 << 14, {"indirect"});
   RenderSettings from_eye = makeSettings(16, 128, 0, {"indirect"});
-  from_eye.params.set("caustic-estimator", "path");
+  from_eye.params.set("estimator", "path");
   expectAgreement(blockMeans(with_wall, from_lights, "indirect"), blockMeans(with_wall, from_eye, "indirect"));
 }
 
@@ -166,7 +191,7 @@ TEST(Reference, CausticsThroughGlassAgreeBetweenPhotonsAndPaths) {
   addObject(scene, makeRectangle("lamp", dvec3(0, 4, 0), dvec3(2.5, 0, 0), dvec3(0, 0, 2.5)), makeLamp(vec3(5.0F)));
   RenderSettings photons = makeSettings(16, 64, 1 << 20, {"specular_caustic"});
   RenderSettings paths = makeSettings(16, 2048, 0, {"specular_caustic"});
-  paths.params.set("specular-caustics", "path");
+  paths.params.set("estimator", "path");
   const Camera camera = makeCamera("through", vec3(0.3F, 2.5F, 0.2F), vec3(0, 0, 0), radians(30));
   const double a = test::meanOf(renderReference(scene, camera, photons).image.layers[0].image).x;
   const double b = test::meanOf(renderReference(scene, camera, paths).image.layers[0].image).x;
@@ -178,7 +203,7 @@ TEST(Reference, SunWithASizeAgreesBetweenEstimators) {
   SceneData scene = test::makeBallScene(makeMetal(vec3(0.9F)), 256);
   scene.lights.push_back(test::makeSun(vec3(-0.4F, -1, -0.2F), vec3(3.0F), 60.0F));
   RenderSettings from_eye = makeSettings(16, 256, 0, {"caustic"});
-  from_eye.params.set("caustic-estimator", "path");
+  from_eye.params.set("estimator", "path");
   expectAgreement(blockMeans(scene, makeSettings(16, 1, 1 << 14, {"caustic"}), "caustic"),
                   blockMeans(scene, from_eye, "caustic"));
 }
@@ -189,7 +214,7 @@ TEST(Reference, EnvironmentAgreesBetweenEstimators) {
   for (int x = 2; x < 7; ++x) image->setRgb(x, 2, vec3(20.0F, 10.0F, 5.0F));
   scene.environment = Environment{image, 20.0F, 1.0F, "test"};
   RenderSettings from_eye = makeSettings(16, 256, 0, {"caustic"});
-  from_eye.params.set("caustic-estimator", "path");
+  from_eye.params.set("estimator", "path");
   expectAgreement(blockMeans(scene, makeSettings(16, 1, 1 << 15, {"caustic"}), "caustic"),
                   blockMeans(scene, from_eye, "caustic"));
 }

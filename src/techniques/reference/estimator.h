@@ -1,0 +1,46 @@
+// Which estimator makes the caustics: the parameter `estimator`.
+//
+//   light       photons, each for the one pixel that sees it: no kernel, no bias
+//   footprint   photons, each spread over its footprint (see footprint.h): the least error until photons are many
+//   photon-map  photons gathered by paths from the eye under a kernel that shrinks (progressive photon mapping)
+//   path        paths from the eye alone: shares nothing with the others; needs lights with a size
+//   auto        footprint
+//
+// Caustics in mirrors and through glass can be met by paths from the eye alone, so they are gathered by all but `path`.
+#pragma once
+
+#include <map>
+#include <memory>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "core/params.h"
+#include "techniques/reference/film.h"
+#include "techniques/reference/photon_batch.h"
+#include "techniques/reference/receiver_view.h"
+
+namespace nephroid {
+
+enum class Estimator : std::uint8_t { kLight, kFootprint, kPhotonMap, kPath };
+
+ParamSpec makeEstimatorParam();
+/// The one that a value of the parameter stands for. @param name  as checked by the parameter
+Estimator chooseEstimator(std::string_view name);
+std::string_view nameOf(Estimator estimator);
+/// Every value of the parameter but `auto`.
+std::vector<std::string> estimatorNames();
+
+/// What spreads photons over footprints: the view that they are spread over, and how far for each light.
+struct FootprintSpread {
+  std::unique_ptr<ReceiverView> view;
+  std::vector<float> overlaps;  ///< by emitter
+
+  /// Measures the scene, and makes tracer and batch spread. This must outlive both.
+  void apply(const ReferenceWorld& world, LightTracer& tracer, PhotonBatch& batch);
+};
+
+/// Says in the metadata what makes each kind of caustic that was asked for: "estimator.caustic", …
+void describeEstimators(Estimator estimator, const LayerNeeds& needs, std::map<std::string, std::string>& metadata);
+
+}  // namespace nephroid
