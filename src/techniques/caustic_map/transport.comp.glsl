@@ -33,6 +33,7 @@ layout(constant_id = 25) const uint kReceiverViews = 1u;
 layout(constant_id = 26) const uint kReceiverLayers = 1u;
 layout(constant_id = 27) const bool kListed = false;
 layout(constant_id = 28) const bool kFluxEq6 = false;
+layout(constant_id = 29) const bool kLands = false;  // some generators have diffuse lobes too
 layout(local_size_x = 8, local_size_y = 8) in;
 layout(scalar, set = 0, binding = 8) readonly buffer Lights { LightRecord lights[]; };
 layout(set = 0, binding = 9) uniform usampler2DArray first_seen;  // of the emission's views: all that there is
@@ -49,6 +50,8 @@ layout(scalar, set = 0, binding = 15) writeonly buffer Accounts { PhotonAccount 
 
 layout(scalar, set = 0, binding = 20) buffer Forks { Fork forks[]; };
 layout(scalar, set = 0, binding = 21) buffer ForkInteriors { Interior fork_interiors[]; };
+layout(scalar, set = 0, binding = 22) writeonly buffer FirstLandings { Photon first_landings[]; };
+layout(scalar, set = 0, binding = 23) writeonly buffer SecondLandings { Photon second_landings[]; };
 
 /// A photon on its way.
 struct Flight {
@@ -61,6 +64,7 @@ struct Flight {
   bool decided;         // the branch has nothing more to say
   bool forks;           // the next branch goes another way than this one
   int closed;           // closed solids that it is inside of
+  uint landings;        // photons that were left on the way
   float last_distance;  // m, since the last event
   vec3 place;           // on what was met last
   vec3 normal;          // of what was bent at last, and the direction before
@@ -102,6 +106,23 @@ Choice chooseWay(Way reflected, Way transmitted, uint events, bool is_inside, in
 /// chances, and what ends there is the one of branch k + 1.
 bool isOwn(Flight flight) { return flight.decided || push.branch == flight.chances + 1u; }
 
+Photon describe(Flight flight, uint index) {
+  Photon photon;
+  bool valid = flight.outcome == kOutcomeDeposited;
+  uint flags = (valid ? kPhotonValid : 0u) | (flight.outcome == kOutcomeEscaped ? kPhotonLeftScene : 0u) |
+               (flight.outcome << kOutcomeShift);
+  photon.position = valid ? flight.place : flight.path.ray.origin;
+  photon.path_length = flight.last_distance;
+  photon.direction = flight.path.ray.dir;
+  photon.light_band_flags = packLightBandFlags(push.light, push.band, flags);
+  photon.flux = flight.path.throughput;
+  photon.index = index;
+  photon.chain = flight.chain;
+  photon.footprint_major = photon.footprint_minor = 0.0;
+  photon.footprint_orientation = 0u;
+  return photon;
+}
+
 /// Follows the flight to a surface, through what absorbs.
 Encounter arrive(inout Flight flight, Met met) {
   bool emission_seen;
@@ -112,20 +133,52 @@ Encounter arrive(inout Flight flight, Met met) {
   return e;
 }
 
+/// Is what a surface takes and sends nowhere this branch's?
+bool ownsRest(Flight flight, Choice choice) {
+  if (flight.path.events == 0u) return push.branch == 0u;
+  return choice.is_chance ? flight.decided : isOwn(flight);
+}
+
+bool isSpecular(SurfaceOptics optics) { return optics.alpha < push.specular_alpha; }
+
+/// Does some of the light that a generator gets come back from it by a lobe of class D?
+bool isReceiver(MaterialPoint m) {
+  return !isSpecular(m.optics) || (m.base_weight > 0.0 && largest(m.optics.base) > 0.0);
+}
+
+/// Does the flight leave a photon on the diffuse lobe of a generator that it meets? Of the light straight from the
+/// lamp none is left: that is no caustic.
+bool lands(Flight flight, MaterialPoint m, Choice choice) {
+  return kLands && flight.path.events > 0u && isReceiver(m) && ownsRest(flight, choice) && flight.landings < kLandings;
+}
+
+/// Leaves it there, with all the flux that arrives: the lobe takes of it what the interface lets through.
+void land(inout Flight flight, Encounter e) {
+  if (!kAccounts) {
+    Photon photon = describe(flight, flight.cell);
+    photon.position = e.surface.position;
+    photon.chain = hashChain(flight.chain, 2u * flight.path.instance);
+    if (flight.landings == 0u) first_landings[flight.cell] = photon;
+    else second_landings[flight.cell] = photon;
+  }
+  ++flight.landings;
+}
+
 /// Enters into the account where the rest stays of what a surface does not send along a way that is followed.
 void accountFor(inout Flight flight, Encounter e, SurfaceOptics optics, Scattered scattered, Way reflected,
                 Way transmitted, Choice choice) {
-  vec3 flux = flight.path.throughput;
-  bool is_first = flight.path.events == 0u;
-  bool own = is_first ? push.branch == 0u : choice.is_chance ? flight.decided : isOwn(flight);
-  if (!own) return;
-  float cos_o = max(-dot(flight.path.ray.dir, e.surface.shading), 0.0);
-  float fresnel = interfaceFresnel(optics, cos_o);
-  vec3 interface_share = interfaceReflectance(optics, cos_o, fresnel) + interfaceTransmittance(optics, fresnel);
+  if (!ownsRest(flight, choice)) return;
+  vec3 flux = flight.path.throughput, interface_share = vec3(0.0);
+  if (isSpecular(optics)) {
+    float cos_o = max(-dot(flight.path.ray.dir, e.surface.shading), 0.0);
+    float fresnel = interfaceFresnel(optics, cos_o);
+    interface_share = interfaceReflectance(optics, cos_o, fresnel) + interfaceTransmittance(optics, fresnel);
+  }
   vec3 scattered_share = scattered.reflected_weight + scattered.transmitted_weight / radianceScale(optics);
   vec3 rest = flux * (1.0 - interface_share);
-  if (e.material.base_weight <= 0.0) flight.account.absorbed += rest;
-  else if (is_first) flight.account.blocked += rest;
+  if (!isReceiver(e.material)) flight.account.absorbed += rest;
+  else if (flight.path.events == 0u) flight.account.blocked += rest;
+  else if (lands(flight, e.material, choice)) flight.account.landed += rest;
   else flight.account.diffuse += rest;
   flight.account.microfacet += flux * (interface_share - scattered_share);
   flight.account.normal += flux * (scattered_share - reflected.weight - transmitted.weight);
@@ -200,6 +253,8 @@ void bend(inout Flight flight, Met met) {
   Scattered scattered = kSceneHasRoughSpecular && optics.alpha > 0.0
                             ? scatterRough(optics, flight.path.ray.dir, e.surface.shading, u)
                             : scatterSmooth(optics, flight.path.ray.dir, e.surface.shading);
+  // Textures may make a part of it as rough as a receiver.
+  if (!isSpecular(optics)) scattered.reflected_weight = scattered.transmitted_weight = vec3(0.0);
   Way reflected = reflection(scattered, e.surface), transmitted = transmission(scattered, e.surface);
   // Of flux, not of radiance: it does not know the index.
   transmitted.weight /= radianceScale(optics);
@@ -207,6 +262,7 @@ void bend(inout Flight flight, Met met) {
   flight.from = flight.path.ray.dir;
   Choice choice = chooseWay(reflected, transmitted, events, e.crossing.is_solid && !e.crossing.entering, flight);
   if (kAccounts) accountFor(flight, e, optics, scattered, reflected, transmitted, choice);
+  if (lands(flight, e.material, choice)) land(flight, e);
   bool is_fork = choice.is_chance && flight.forks;
   if (kListed && push.branch > 0u && push.is_last == 0u && is_fork) keepFork(flight, e, reflected);
   flight.chain = hashChain(flight.chain, 2u * met.instance + (choice.way.through ? 1u : 0u));
@@ -318,23 +374,6 @@ void leaveToOthers(inout Flight flight) {
   }
 }
 
-Photon describe(Flight flight, uint index) {
-  Photon photon;
-  bool valid = flight.outcome == kOutcomeDeposited;
-  uint flags = (valid ? kPhotonValid : 0u) | (flight.outcome == kOutcomeEscaped ? kPhotonLeftScene : 0u) |
-               (flight.outcome << kOutcomeShift);
-  photon.position = valid ? flight.place : flight.path.ray.origin;
-  photon.path_length = flight.last_distance;
-  photon.direction = flight.path.ray.dir;
-  photon.light_band_flags = packLightBandFlags(push.light, push.band, flags);
-  photon.flux = flight.path.throughput;
-  photon.index = index;
-  photon.chain = flight.chain;
-  photon.footprint_major = photon.footprint_minor = 0.0;
-  photon.footprint_orientation = 0u;
-  return photon;
-}
-
 /// @return  false: this thread has none
 bool chooseCell(out uvec2 cell) {
   cell = gl_GlobalInvocationID.xy;
@@ -358,9 +397,9 @@ void main() {
   uint seed = hashChain(push.seed, index);
   Path path = Path(ray, flux, false, false, 0u, seed, push.wavelength_nm, kNowhere, 0u, kInTheOpen);
   vec3 none = vec3(0.0);
-  PhotonAccount account = PhotonAccount(push.branch == 0u ? flux : none, none, none, none, none, none, none, none);
+  PhotonAccount account = PhotonAccount(push.branch == 0u ? flux : none, none, none, none, none, none, none, none, none);
   Flight flight =
-      Flight(path, index, 0u, 0u, kOutcomeDeposited, 0u, false, false, 0, 0.0, ray.origin, none, none, account);
+      Flight(path, index, 0u, 0u, kOutcomeDeposited, 0u, false, false, 0, 0u, 0.0, ray.origin, none, none, account);
 
   Pictures generators = Pictures(0u, kGeneratorViews, kGeneratorLayers, push.generator_size);
   Pictures receivers = Pictures(kGeneratorViews, kReceiverViews, kReceiverLayers, push.receiver_size);

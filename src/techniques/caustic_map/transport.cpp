@@ -29,6 +29,10 @@ struct Views {
   PictureView pictures[kMostEmissionViews + kMostReceiverViews];
 };
 
+bool anyLands(const SceneBuffers& buffers) {
+  return std::ranges::any_of(buffers.draws(), [](const auto& draw) { return draw.generates && draw.receives; });
+}
+
 PictureView pictureView(const ViewRecord& view) {
   return {.clip_row_x = view.clip_row_x,
           .clip_row_y = view.clip_row_y,
@@ -52,6 +56,7 @@ Views viewsOf(const LightPictures& pictures) {
 Transport::Transport(gpu::Device& device, const SceneBuffers& buffers)
     : device_(device),
       buffers_(buffers),
+      lands_(anyLands(buffers)),
       list_cells_(device,
                   {.shader = shaders::list_cells_comp,
                    .bindings = SceneBuffers::bindings({kTexture, kTable}),
@@ -64,23 +69,28 @@ Transport::Transport(gpu::Device& device, const SceneBuffers& buffers)
 
 const gpu::ComputePipeline& Transport::pipelineFor(const LightPictures& pictures, const TransportSettings& settings) {
   const std::vector<std::uint32_t> key{
-      settings.account != nullptr ? 1U : 0U,     static_cast<std::uint32_t>(settings.search),
-      static_cast<std::uint32_t>(settings.exit), static_cast<std::uint32_t>(pictures.emission_views.size()),
-      pictures.generators.layerCount(),          static_cast<std::uint32_t>(pictures.receiver_views.size()),
-      pictures.receivers.layerCount(),           settings.cell_lists != nullptr ? 1U : 0U,
-      settings.flux == CellFlux::kEq6 ? 1U : 0U};
+      settings.account != nullptr ? 1U : 0U,
+      static_cast<std::uint32_t>(settings.search),
+      static_cast<std::uint32_t>(settings.exit),
+      static_cast<std::uint32_t>(pictures.emission_views.size()),
+      pictures.generators.layerCount(),
+      static_cast<std::uint32_t>(pictures.receiver_views.size()),
+      pictures.receivers.layerCount(),
+      settings.cell_lists != nullptr ? 1U : 0U,
+      settings.flux == CellFlux::kEq6 ? 1U : 0U,
+      lands_ && (settings.landings != nullptr || settings.account != nullptr) ? 1U : 0U};
   const auto found = pipelines_.find(key);
   if (found != pipelines_.end()) return found->second;
   std::vector<gpu::Constant> constants = buffers_.traits().pathConstants();
   for (std::uint32_t i = 0; i < key.size(); ++i) constants.push_back({20 + i, key[i]});
-  gpu::ComputePipeline pipeline(
-      device_,
-      {.shader = shaders::transport_comp,
-       .bindings = SceneBuffers::bindings({kTable, kTable, kTexture, kTexture, kTexture, kTexture, kTexture, kTable,
-                                           kTable, kTexture, kTexture, kTexture, kTable, kTable, kTable}),
-       .push_bytes = sizeof(TransportPush),
-       .constants = std::move(constants)},
-      "transport");
+  gpu::ComputePipeline pipeline(device_,
+                                {.shader = shaders::transport_comp,
+                                 .bindings = SceneBuffers::bindings(
+                                     {kTable, kTable, kTexture, kTexture, kTexture, kTexture, kTexture, kTable, kTable,
+                                      kTexture, kTexture, kTexture, kTable, kTable, kTable, kTable, kTable}),
+                                 .push_bytes = sizeof(TransportPush),
+                                 .constants = std::move(constants)},
+                                "transport");
   return pipelines_.emplace(key, std::move(pipeline)).first->second;
 }
 
@@ -93,6 +103,12 @@ CellLists Transport::makeCellLists(std::uint32_t grid) const {
                         "lists of cells"),
           .forks = make(cells * sizeof(Fork), 0, "forks"),
           .interiors = make(cells * kInteriorWords * sizeof(std::uint32_t), 0, "insides of forks")};
+}
+
+void Transport::clear(gpu::CommandRecorder& recorder, const PhotonBuffer& photons) {
+  const gpu::Buffer& target = photons.chunks()[0].buffer;
+  recorder.pass("clear photons", {Use(target, Access::kTransferWrite)},
+                [&](PassCommands& commands) { commands.fill(target, 0); });
 }
 
 void Transport::listCells(gpu::CommandRecorder& recorder, const LightPictures& pictures, const gpu::Buffer& lists,
@@ -133,7 +149,8 @@ void Transport::record(gpu::CommandRecorder& recorder, const LightPictures& pict
                            .generator_lower = pictures.generator_bounds.lower,
                            .generator_upper = pictures.generator_bounds.upper,
                            .scene_lower = pictures.scene_bounds.lower,
-                           .scene_upper = pictures.scene_bounds.upper};
+                           .scene_upper = pictures.scene_bounds.upper,
+                           .specular_alpha = settings.specular_alpha};
   const gpu::Buffer& target = photons.chunks()[0].buffer;
   const gpu::Buffer& account = settings.account != nullptr ? *settings.account : nothing_;
   const gpu::Buffer& lists = settings.cell_lists != nullptr ? settings.cell_lists->cells : nothing_;
@@ -143,8 +160,16 @@ void Transport::record(gpu::CommandRecorder& recorder, const LightPictures& pict
     NEPHROID_ASSERT_EQ(settings.account, nullptr);
     NEPHROID_ASSERT_LT(settings.branch, kMostBranches);
     if (settings.branch == 0) listCells(recorder, pictures, lists, push);
-    recorder.pass("clear photons", {Use(target, Access::kTransferWrite)},
-                  [&](PassCommands& commands) { commands.fill(target, 0); });
+    clear(recorder, photons);
+  }
+  std::array<const gpu::Buffer*, kLandings> landings;
+  landings.fill(&nothing_);
+  if (lands_ && settings.landings != nullptr) {
+    NEPHROID_ASSERT_EQ(settings.account, nullptr);
+    for (std::size_t i = 0; i < kLandings; ++i) {
+      clear(recorder, (*settings.landings)[i]);
+      landings[i] = &(*settings.landings)[i].chunks()[0].buffer;
+    }
   }
   const gpu::ComputePipeline& pipeline = pipelineFor(pictures, settings);
   std::vector<Use> uses = buffers_.uses(
@@ -161,6 +186,8 @@ void Transport::record(gpu::CommandRecorder& recorder, const LightPictures& pict
     uses.emplace_back(forks, Access::kComputeWrite);
     uses.emplace_back(interiors, Access::kComputeWrite);
   }
+  if (landings[0] != &nothing_)
+    for (const gpu::Buffer* buffer : landings) uses.emplace_back(*buffer, Access::kComputeWrite);
   recorder.pass("transport", uses, [&](PassCommands& commands) {
     const gpu::Sampler& nearest = buffers_.sampler();
     commands.bind(pipeline);
@@ -170,7 +197,7 @@ void Transport::record(gpu::CommandRecorder& recorder, const LightPictures& pict
          Bound(12, pictures.receivers.seen(), nearest), Bound(13, pictures.receivers.surfaces(), nearest),
          Bound(14, target), Bound(15, account), Bound(16, buffers_.neighbours(), nearest),
          Bound(17, pictures.generators.depths(), nearest), Bound(18, pictures.receivers.depths(), nearest),
-         Bound(19, lists), Bound(20, forks), Bound(21, interiors)}));
+         Bound(19, lists), Bound(20, forks), Bound(21, interiors), Bound(22, *landings[0]), Bound(23, *landings[1])}));
     commands.pushConstants(push);
     if (settings.cell_lists != nullptr) {
       commands.dispatchIndirect(lists, settings.branch * sizeof(CellListHead));

@@ -183,6 +183,29 @@ TEST_F(CausticMapTest, ALightThatTurnsGivesNoJumps) {
   EXPECT_GT(before, 0.0);
 }
 
+TEST_F(CausticMapTest, AHalfMirrorShowsWhatFallsOnIt) {
+  // A wall that mirrors all light, before a floor that mirrors half of it: from (−1, −1, 0) light comes back onto the
+  // floor at 45°. The floor scatters half as a Lambertian, of what the wall sends and of what comes straight.
+  SceneData scene;
+  test::addObject(scene, test::makeFloor(4.0), test::makeHalfMirror());
+  test::addObject(scene, makeRectangle("wall", dvec3(-2, 1, 0), dvec3(0, 1, 0), dvec3(0, 0, 2)),
+                  test::makeMetal(vec3(1.0F)));
+  scene.lights.push_back(test::makeSun(vec3(-1, -1, 0), vec3(5.0F, 4.0F, 3.0F)));
+  const Camera camera = makeCamera("floor", vec3(-1, 3, 0.001F), vec3(-1, 0, 0), 0.0F, 1.6F);
+  const vec3 irradiance = std::sqrt(0.5F) * vec3(5.0F, 4.0F, 3.0F);
+  for (const DepositTarget target : {DepositTarget::kCamera, DepositTarget::kLight}) {
+    const std::unique_ptr<RealtimeFrame> frame = makeFrame(scene, camera, {.target = target});
+    frame->render(0);
+    const Image image = frame->readSummed("irradiance_caustic"), caustic = frame->readSummed("caustic");
+    for (int y = 0; y < kSize; ++y)
+      for (int x = 0; x < kSize; ++x)
+        for (int c = 0; c < 3; ++c) {
+          ASSERT_NEAR(image.at(x, y)[c], irradiance[c], 0.01F * irradiance[c]) << x << ", " << y;
+          ASSERT_NEAR(caustic.at(x, y)[c], 0.5F / kPi * irradiance[c], 0.01F * irradiance[c]) << x << ", " << y;
+        }
+  }
+}
+
 TEST_F(CausticMapTest, FiniteLightsAreTakenAsPoints) {
   // So far away that its size bears on nothing, a lamp is its point; and the sky's flux is that of its directions.
   SceneData scene = test::makeBallScene(test::makeGlass(1.5F), 64);
