@@ -332,22 +332,24 @@ Met meetNext(inout Flight flight, Pictures generators, Pictures receivers) {
   bool has_entered = flight.path.events == 1u && dot(ray.dir, flight.normal) < 0.0 && generators.layer_count > 1u;
   if (kExit == kExitWyman && has_entered)
     met = meetBackFace(ray, flight.normal, flight.from, generators, generator_seen, generator_surfaces);
-  else
+  else  // What is near is the surface that it starts from, as a rule: the first step is to tell.
     met = meetLayers(ray, t_end, kFarAway, start, generators, generator_seen, generator_surfaces, generator_depths,
-                     push.iterations, hidden);
+                     push.iterations, false, hidden);
+  // From inside a closed solid there is no way but through its surface.
+  if (kExit == kExitPlanes && flight.closed > 0 && met.instance == kNowhere) met = walkToExit(ray, start);
   // The pictures hold all generators, so what leaves them meets none; what starts beside them may.
   if (hidden) hidden = !placeInPictures(generators, ray.origin).inside;
   t_end = leaveBox(ray, push.scene_lower, push.scene_upper);
   Met receiver;
   if (kSearch == kSearchPlanes) {
     receiver = meetLayers(ray, t_end, met.t, start, receivers, receiver_seen, receiver_surfaces, receiver_depths,
-                          push.receiver_iterations, hidden_receiver);
+                          push.receiver_iterations, true, hidden_receiver);
     flight.place = ray.origin + receiver.t * ray.dir;
   } else {
     receiver = searchReceiver(ray, t_end, push.first_guess, receivers, receiver_seen, receiver_surfaces, 0u,
                               push.receiver_iterations, flight.place);
   }
-  // From inside a closed solid there is no way but through its surface: a receiver farther on is not met.
+  // A receiver beyond a surface that is not found is not met.
   bool is_enclosed = flight.closed > 0 && met.instance == kNowhere;
   if (receiver.t < met.t) met = receiver;
   if (is_enclosed || met.instance == kNowhere) {

@@ -122,6 +122,40 @@ TEST_F(PhotonLedgerTest, AgreesWithTheReferenceForRoughBalls) {
   }
 }
 
+TEST_F(PhotonLedgerTest, LightReachesWhatIsNearerThanATexel) {
+  // A millimetre under a slab that bends nothing, in pictures with texels of 5 cm across which depths differ as much.
+  for (const bool is_sun : {true, false}) {
+    SCOPED_TRACE(is_sun ? "sun" : "point");
+    SceneData scene;
+    test::addObject(scene, test::makeFloor(4.0), test::makeDiffuse(vec3(0.6F)));
+    test::addObject(scene, makeBox("slab", dvec3(-1, 0.001, -1), dvec3(1, 0.3, 1)), test::makeGlass(1.0F));
+    scene.lights.push_back(is_sun ? test::makeSun(vec3(1, -1, 0.3F), vec3(3))
+                                  : test::makePoint(vec3(-2, 2.3F, -0.6F), vec3(9)));
+    LightRig rig(device(), scene, 64);
+    const Ledger ledger = rig.ledger(1);
+    expectCloses(ledger);
+    EXPECT_NEAR(ledger.deposited.y / (ledger.emitted.y - ledger.missed.y - ledger.blocked.y), 1.0, 1e-3)
+        << formatLedgers({ledger});
+  }
+}
+
+TEST_F(PhotonLedgerTest, FindsTheWayOutBesideEdges) {
+  // The pictures show little of sides that are seen edge-on, and a ray beside an edge leaves within a texel.
+  SceneData scene = test::makeBallScene(test::makeGlass(1.5F));
+  scene.instances.pop_back();
+  test::addObject(scene, makeBox("block", dvec3(-0.5, 0.2, -0.3), dvec3(0.5, 1, 0.3)), test::makeGlass(1.5F));
+  scene.lights.push_back(test::makeSun(vec3(0, -1, 0), vec3(5)));
+  for (const int degree : {38, 45, 61, 72}) {
+    SCOPED_TRACE(degree);
+    const float angle = radians(static_cast<float>(degree));
+    scene.lights[0].direction = normalize(vec3(std::cos(angle), -2.0F, std::sin(angle)));
+    LightRig rig(device(), scene, 64);
+    const Ledger ledger = rig.ledger(1);
+    expectCloses(ledger);
+    EXPECT_LT(lostTo(ledger, LossReason::kHidden).y, 1e-3 * ledger.emitted.y);
+  }
+}
+
 TEST_F(PhotonLedgerTest, EqSixLosesAThirdOfWhatABallGets) {
   // A mirror that takes nothing: what leaves it is what came. Under a sun the mean of cos θ over a disc of rays, with
   // sin θ = h, is ∫ √(1 − h²) 2h dh = 2/3.
