@@ -371,15 +371,25 @@ void CausticMap::follow(gpu::CommandRecorder& recorder, std::uint32_t sample, co
                               .specular_alpha = inputs_.specular_alpha};
   for (transport.band_index = 0; transport.band_index < bands_.size(); ++transport.band_index) {
     transport.band = bands_[transport.band_index];
-    for (std::uint32_t v = 0; v < countOf(pictures.emission); ++v)
-      for (transport.branch = 0; transport.branch <= last; ++transport.branch) {
-        transport.is_last = transport.branch == last;
+    for (std::uint32_t v = 0; v < countOf(pictures.emission); ++v) {
+      const auto run = [&] {
         const Photons& photons = next();
         if (photons.landings && !ledger) transport.landings = &*photons.landings;
         transport_.record(recorder, followed, pictures.light, 0, v, transport, photons.ends);
         if (ledger) ledger->record(recorder, photons.ends, photons.ends.capacity(), 0, transport.branch);
         use(photons);
+      };
+      transport.follows_weaker = false;
+      for (transport.branch = 0; transport.branch <= last; ++transport.branch) {
+        transport.is_last = transport.branch == last;
+        run();
       }
+      // Where nothing lets light through there is but one way.
+      if (!settings_.weaker_ways || last == 0) continue;
+      transport.branch = 1;
+      transport.is_last = transport.follows_weaker = true;
+      run();
+    }
   }
 }
 
@@ -393,7 +403,7 @@ std::vector<Ledger> CausticMap::account() {
   constexpr std::uint32_t kMostViews = 6;
   const auto bands = static_cast<std::uint32_t>(bands_.size());
   PhotonLedger ledger(inputs_.device, photons_->ends.capacity(),
-                      bands * kMostViews * (2 + settings_.internal_reflections));
+                      bands * kMostViews * (3 + settings_.internal_reflections));
   gpu::CommandRecorder recorder(inputs_.device);
   for (const Point& point : choosePoints(0)) {
     std::unique_ptr<Pictures>& pictures = point.source->pictures;
@@ -469,6 +479,15 @@ std::vector<ParamSpec> makeParams() {
        8,
        "",
        "inside a solid that are followed before light leaves it",
+       {}},
+      {"weaker-ways",
+       defaults.weaker_ways,
+       0,
+       0,
+       "",
+       "whether the weaker of two ways is followed too, the first time that light which enters a solid and leaves it "
+       "has "
+       "both: hollow bodies, several bodies behind one another",
        {}},
       {"iterations", number(defaults.iterations), 1, 64, "", "to find where a ray meets what bends it", {}},
       {"receiver-iterations", number(defaults.receiver_iterations), 1, 64, "", "to find where it ends", {}},
@@ -565,6 +584,7 @@ CausticMapSettings makeSettings(const ParamSet& params) {
   settings.layers = count("layers");
   settings.receiver_layers = count("receiver-layers");
   settings.internal_reflections = count("internal-reflections");
+  settings.weaker_ways = params.getBool("weaker-ways");
   settings.iterations = count("iterations");
   settings.receiver_iterations = count("receiver-iterations");
   settings.search = searchOf(params.getString("search"));

@@ -36,7 +36,8 @@ struct CausticMapSettings {
   std::uint32_t layers = 4;           ///< surfaces behind one another that light is followed through, from the light
   std::uint32_t receiver_layers = 4;  ///< likewise that it may end on
   std::uint32_t internal_reflections = 2;
-  std::uint32_t iterations = 8;           ///< to find where a ray meets a generator,
+  bool weaker_ways = false;      ///< also follows the first way that light is sent along less than along another
+  std::uint32_t iterations = 8;  ///< to find where a ray meets a generator,
   std::uint32_t receiver_iterations = 8;  ///< and a receiver
   Search search = Search::kPlanes;
   Exit exit = Exit::kPlanes;

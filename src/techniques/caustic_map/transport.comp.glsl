@@ -63,6 +63,7 @@ struct Flight {
   uint chances;         // to leave what it is inside of, that it passed
   bool decided;         // the branch has nothing more to say
   bool forks;           // the next branch goes another way than this one
+  bool left_weaker;     // went past, or along, the first weaker way that no branch takes
   int closed;           // closed solids that it is inside of
   uint landings;        // photons that were left on the way
   float last_distance;  // m, since the last event
@@ -77,34 +78,50 @@ struct Choice {
   Way way;
   vec3 not_followed;  // weight of the other way if no branch takes it
   bool is_chance;     // to leave
+  bool is_weaker;     // the pass follows it from here on
 };
+
+bool isLast() { return (push.role & kRoleIsLast) != 0u; }
+bool followsWeaker() { return (push.role & kRoleIsWeaker) != 0u; }
+
+/// Whether what becomes of the flight from here on is this pass's: branches b > k share the way past the first k
+/// chances, and what ends there is the one of branch k + 1. What goes before the weaker way is the branch's.
+bool isOwn(Flight flight) {
+  return followsWeaker() ? flight.left_weaker : flight.decided || push.branch == flight.chances + 1u;
+}
 
 /// Goes on along the branch, so that no two branches take the same path: at the first event one is reflected and the
 /// others are let in; of those, branch b leaves at its b-th chance, that is where something is let through from the
 /// inside, and is reflected at those before. Total reflection is no chance and is followed by all. Elsewhere (at what is
-/// met after leaving, or inside) the way that carries more is followed, and the other is lost.
+/// met after leaving, or inside) the way that carries more is followed. The other is lost, but for the first one of
+/// branch 1, which a pass of its own may follow (TransportSettings::follows_weaker).
 Choice chooseWay(Way reflected, Way transmitted, uint events, bool is_inside, inout Flight flight) {
   if (events == 0u) {
     flight.decided = push.branch == 0u;
     flight.forks = flight.decided && largest(transmitted.weight) > 0.0;
-    vec3 rest = flight.decided && push.is_last != 0u ? transmitted.weight : vec3(0.0);
-    return Choice(flight.decided ? reflected : transmitted, rest, false);
+    vec3 rest = flight.decided && isLast() ? transmitted.weight : vec3(0.0);
+    return Choice(flight.decided ? reflected : transmitted, rest, false, false);
   }
   bool can_leave = largest(transmitted.weight) > 0.0;
   if (is_inside && can_leave && !flight.decided) {
     ++flight.chances;
     flight.decided = flight.chances == push.branch;
     flight.forks = flight.decided && largest(reflected.weight) > 0.0;
-    vec3 rest = flight.decided && push.is_last != 0u ? reflected.weight : vec3(0.0);
-    return Choice(flight.decided ? transmitted : reflected, rest, true);
+    vec3 rest = flight.decided && isLast() ? reflected.weight : vec3(0.0);
+    return Choice(flight.decided ? transmitted : reflected, rest, true, false);
   }
   bool reflects = largest(reflected.weight) >= largest(transmitted.weight);
-  return Choice(reflects ? reflected : transmitted, reflects ? transmitted.weight : reflected.weight, false);
+  Way stronger = transmitted, weaker = reflected;
+  if (reflects) {
+    stronger = reflected;
+    weaker = transmitted;
+  }
+  bool is_fork = push.branch == 1u && !flight.left_weaker && largest(weaker.weight) > 0.0;
+  flight.left_weaker = flight.left_weaker || is_fork;
+  if (!is_fork || !followsWeaker()) return Choice(stronger, weaker.weight, false, false);
+  flight.decided = true;
+  return Choice(weaker, vec3(0.0), false, true);
 }
-
-/// Whether what becomes of the flight from here on is this branch's: branches b > k share the way past the first k
-/// chances, and what ends there is the one of branch k + 1.
-bool isOwn(Flight flight) { return flight.decided || push.branch == flight.chances + 1u; }
 
 Photon describe(Flight flight, uint index) {
   Photon photon;
@@ -135,6 +152,7 @@ Encounter arrive(inout Flight flight, Met met) {
 
 /// Is what a surface takes and sends nowhere this branch's?
 bool ownsRest(Flight flight, Choice choice) {
+  if (followsWeaker()) return flight.left_weaker && !choice.is_weaker;
   if (flight.path.events == 0u) return push.branch == 0u;
   return choice.is_chance ? flight.decided : isOwn(flight);
 }
@@ -167,6 +185,8 @@ void land(inout Flight flight, Encounter e) {
 /// Enters into the account where the rest stays of what a surface does not send along a way that is followed.
 void accountFor(inout Flight flight, Encounter e, SurfaceOptics optics, Scattered scattered, Way reflected,
                 Way transmitted, Choice choice) {
+  // The branch has it among what is not followed.
+  if (choice.is_weaker) flight.account.other_way -= flight.path.throughput * choice.way.weight;
   if (!ownsRest(flight, choice)) return;
   vec3 flux = flight.path.throughput, interface_share = vec3(0.0);
   if (isSpecular(optics)) {
@@ -264,7 +284,7 @@ void bend(inout Flight flight, Met met) {
   if (kAccounts) accountFor(flight, e, optics, scattered, reflected, transmitted, choice);
   if (lands(flight, e.material, choice)) land(flight, e);
   bool is_fork = choice.is_chance && flight.forks;
-  if (kListed && push.branch > 0u && push.is_last == 0u && is_fork) keepFork(flight, e, reflected);
+  if (kListed && push.branch > 0u && !isLast() && is_fork) keepFork(flight, e, reflected);
   flight.chain = hashChain(flight.chain, 2u * met.instance + (choice.way.through ? 1u : 0u));
   take(flight.path, choice.way, e.surface, e.crossing, false);
   if (largest(abs(flight.path.throughput)) <= 0.0) flight.outcome = events == 0u ? kOutcomeNoWay : kOutcomeAbsorbed;
@@ -380,9 +400,10 @@ void leaveToOthers(inout Flight flight) {
 bool chooseCell(out uvec2 cell) {
   cell = gl_GlobalInvocationID.xy;
   if (!kListed) return cell.x < push.grid && cell.y < push.grid;
+  uint list = followsWeaker() ? kWeakerList : push.branch;
   uint i = (gl_WorkGroupID.y * kMostGroups + gl_WorkGroupID.x) * kListGroup + gl_LocalInvocationIndex;
-  if (i >= heads[push.branch].count) return false;
-  uint index = listed[firstOfList(push.branch, push.grid * push.grid) + i];
+  if (i >= heads[list].count) return false;
+  uint index = listed[firstOfList(list, push.grid * push.grid) + i];
   cell = uvec2(index % push.grid, index / push.grid);
   return true;
 }
@@ -401,7 +422,7 @@ void main() {
   vec3 none = vec3(0.0);
   PhotonAccount account = PhotonAccount(push.branch == 0u ? flux : none, none, none, none, none, none, none, none, none);
   Flight flight =
-      Flight(path, index, 0u, 0u, kOutcomeDeposited, 0u, false, false, 0, 0u, 0.0, ray.origin, none, none, account);
+      Flight(path, index, 0u, 0u, kOutcomeDeposited, 0u, false, false, false, 0, 0u, 0.0, ray.origin, none, none, account);
 
   Pictures generators = Pictures(0u, kGeneratorViews, kGeneratorLayers, push.generator_size);
   Pictures receivers = Pictures(kGeneratorViews, kReceiverViews, kReceiverLayers, push.receiver_size);
@@ -439,5 +460,7 @@ void main() {
   photons[index] = describe(flight, index);
   if (kAccounts) accounts[index] = flight.account;
   // Where no way forks here, branches beyond have nothing to say.
-  if (kListed && push.is_last == 0u && flight.forks) addToList(push.branch + 1u, push.grid * push.grid, index);
+  uint cells = push.grid * push.grid;
+  if (kListed && !isLast() && flight.forks) addToList(push.branch + 1u, cells, index);
+  if (kListed && !followsWeaker() && flight.left_weaker) addToList(kWeakerList, cells, index);
 }

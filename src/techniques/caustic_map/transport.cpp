@@ -17,8 +17,8 @@ static_assert(sizeof(TransportPush) <= 128);
 constexpr std::uint32_t kMostReceiverViews = 6;
 
 /// Empty lists, for all branches.
-constexpr std::array<CellListHead, kMostBranches> kNoCells = [] {
-  std::array<CellListHead, kMostBranches> heads{};
+constexpr std::array<CellListHead, kCellLists> kNoCells = [] {
+  std::array<CellListHead, kCellLists> heads{};
   heads.fill({.groups_x = 0, .groups_y = 1, .groups_z = 1, .count = 0});
   return heads;
 }();
@@ -99,7 +99,7 @@ CellLists Transport::makeCellLists(std::uint32_t grid) const {
   const auto make = [&](VkDeviceSize bytes, VkBufferUsageFlags usage, const char* name) {
     return gpu::Buffer(device_, bytes, VK_BUFFER_USAGE_STORAGE_BUFFER_BIT | usage, gpu::MemoryIntent::kDevice, name);
   };
-  return {.cells = make(sizeof(kNoCells) + 2 * cells * sizeof(std::uint32_t), VK_BUFFER_USAGE_INDIRECT_BUFFER_BIT,
+  return {.cells = make(sizeof(kNoCells) + 3 * cells * sizeof(std::uint32_t), VK_BUFFER_USAGE_INDIRECT_BUFFER_BIT,
                         "lists of cells"),
           .forks = make(cells * sizeof(Fork), 0, "forks"),
           .interiors = make(cells * kInteriorWords * sizeof(std::uint32_t), 0, "insides of forks")};
@@ -130,27 +130,28 @@ void Transport::record(gpu::CommandRecorder& recorder, const LightPictures& pict
                        const PhotonBuffer& photons) {
   const Views views = viewsOf(pictures);
   recorder.upload(views_, std::as_bytes(std::span(&views, 1)));
-  const TransportPush push{.grid = settings.grid,
-                           .light = light,
-                           .view = view,
-                           .branch = settings.branch,
-                           .max_events = settings.max_events,
-                           .offset = settings.offset,
-                           .generator_size = static_cast<float>(pictures.generators.size()),
-                           .receiver_size = static_cast<float>(pictures.receivers.size()),
-                           .iterations = settings.iterations,
-                           .receiver_iterations = settings.receiver_iterations,
-                           .first_guess = settings.first_guess,
-                           .is_last = settings.is_last ? 1U : 0U,
-                           .wavelength_nm = settings.band.wavelength_nm,
-                           .band_weight = settings.band.weight,
-                           .band = settings.band_index,
-                           .seed = settings.seed,
-                           .generator_lower = pictures.generator_bounds.lower,
-                           .generator_upper = pictures.generator_bounds.upper,
-                           .scene_lower = pictures.scene_bounds.lower,
-                           .scene_upper = pictures.scene_bounds.upper,
-                           .specular_alpha = settings.specular_alpha};
+  const TransportPush push{
+      .grid = settings.grid,
+      .light = light,
+      .view = view,
+      .branch = settings.branch,
+      .max_events = settings.max_events,
+      .offset = settings.offset,
+      .generator_size = static_cast<float>(pictures.generators.size()),
+      .receiver_size = static_cast<float>(pictures.receivers.size()),
+      .iterations = settings.iterations,
+      .receiver_iterations = settings.receiver_iterations,
+      .first_guess = settings.first_guess,
+      .role = (settings.is_last ? kRoleIsLast : 0U) | (settings.follows_weaker ? kRoleIsWeaker : 0U),
+      .wavelength_nm = settings.band.wavelength_nm,
+      .band_weight = settings.band.weight,
+      .band = settings.band_index,
+      .seed = settings.seed,
+      .generator_lower = pictures.generator_bounds.lower,
+      .generator_upper = pictures.generator_bounds.upper,
+      .scene_lower = pictures.scene_bounds.lower,
+      .scene_upper = pictures.scene_bounds.upper,
+      .specular_alpha = settings.specular_alpha};
   const gpu::Buffer& target = photons.chunks()[0].buffer;
   const gpu::Buffer& account = settings.account != nullptr ? *settings.account : nothing_;
   const gpu::Buffer& lists = settings.cell_lists != nullptr ? settings.cell_lists->cells : nothing_;
@@ -200,7 +201,8 @@ void Transport::record(gpu::CommandRecorder& recorder, const LightPictures& pict
          Bound(19, lists), Bound(20, forks), Bound(21, interiors), Bound(22, *landings[0]), Bound(23, *landings[1])}));
     commands.pushConstants(push);
     if (settings.cell_lists != nullptr) {
-      commands.dispatchIndirect(lists, settings.branch * sizeof(CellListHead));
+      commands.dispatchIndirect(lists,
+                                (settings.follows_weaker ? kWeakerList : settings.branch) * sizeof(CellListHead));
       return;
     }
     const std::uint32_t groups = gpu::groupsOf(settings.grid, kPixelGroup);

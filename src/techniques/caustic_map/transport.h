@@ -77,6 +77,9 @@ struct TransportSettings {
   const Landings* landings = nullptr;
   float specular_alpha = kDefaultSpecularAlpha;  ///< an interface of a larger one is a diffuse lobe
   bool is_last = false;                          ///< no branch beyond this one is followed: for the account
+  /// Of branch 1: goes on along the weaker of two ways where the branch went along the stronger one, the first time
+  /// that no other branch takes both. By lists it is to be recorded after all branches.
+  bool follows_weaker = false;
 };
 
 /// What branches leave to one another: cells, and flights where they fork.

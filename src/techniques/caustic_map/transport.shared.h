@@ -57,6 +57,12 @@ NEPHROID_CONST uint kLandings = 2u;
 
 /// Branches that may be followed by lists of cells.
 NEPHROID_CONST uint kMostBranches = 16u;
+/// The list of cells whose weaker way is followed, after those of the branches.
+NEPHROID_CONST uint kWeakerList = kMostBranches;
+NEPHROID_CONST uint kCellLists = kMostBranches + 1u;
+/// What a pass is: the last of those of branches; one that follows the weaker way.
+NEPHROID_CONST uint kRoleIsLast = 1u;
+NEPHROID_CONST uint kRoleIsWeaker = 2u;
 /// Cells of a list that a group of threads follows.
 NEPHROID_CONST uint kListGroup = 64u;
 /// Groups along one axis, which every device allows.
@@ -108,7 +114,7 @@ struct TransportPush {
   uint iterations;
   uint receiver_iterations;
   float first_guess;    // m; of receiver_search.glsl
-  uint is_last;         // no other branch has what stays inside
+  uint role;            // kRole…
   float wavelength_nm;  // of the band; 0: nothing disperses
   vec3 band_weight;     // of the light's flux
   uint band;

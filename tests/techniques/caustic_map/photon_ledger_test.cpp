@@ -45,6 +45,7 @@ TEST_F(PhotonLedgerTest, ClosesForSolidsAndMetal) {
     scene.lights.push_back(test::makeSun(vec3(-0.7F, -1, 0.2F), vec3(2, 3, 5)));
     LightRig rig(device(), scene);
     for (const std::uint32_t last : {0U, 1U, 4U}) expectCloses(rig.ledger(last));
+    expectCloses(rig.ledger(2, {.follows_weaker = true}));
   }
 }
 
@@ -154,6 +155,28 @@ TEST_F(PhotonLedgerTest, FindsTheWayOutBesideEdges) {
     expectCloses(ledger);
     EXPECT_LT(lostTo(ledger, LossReason::kHidden).y, 1e-3 * ledger.emitted.y);
   }
+}
+
+TEST_F(PhotonLedgerTest, FollowsTheWeakerWay) {
+  // Two slabs, one on top of the other, squarely: at the second one R = 0.04 of what the first lets through is
+  // reflected and lost, and again of what goes in at its top. The first of these is followed back up.
+  SceneData scene;
+  test::addObject(scene, test::makeFloor(4.0), test::makeDiffuse(vec3(0.6F)));
+  for (const double y : {0.5, 1.0})
+    test::addObject(scene, makeBox("slab", dvec3(-1, y, -1), dvec3(1, y + 0.3, 1)), test::makeGlass(1.5F));
+  scene.lights.push_back(test::makeSun(vec3(0, -1, 0), vec3(3)));
+  LightRig rig(device(), scene, 64);
+  const Ledger strong = rig.ledger(1), both = rig.ledger(1, {.follows_weaker = true});
+  expectCloses(both);
+  const double through = 0.96 * 0.96, back = through * 0.04;
+  const auto otherWay = [&](const Ledger& ledger) {
+    return lostTo(ledger, LossReason::kOtherWay).y / (ledger.emitted.y - ledger.blocked.y - ledger.missed.y);
+  };
+  EXPECT_NEAR(otherWay(strong), back + through * 0.96 * 0.04, 1e-3);
+  // Up through the first slab it is reflected twice more, the weaker way, which is lost.
+  EXPECT_NEAR(otherWay(both), through * 0.96 * 0.04 + back * (0.04 + 0.96 * 0.04), 1e-3);
+  EXPECT_NEAR((both.escaped.y - strong.escaped.y) / (both.emitted.y - both.blocked.y - both.missed.y),
+              back * 0.96 * 0.96, 1e-3);
 }
 
 TEST_F(PhotonLedgerTest, EqSixLosesAThirdOfWhatABallGets) {
