@@ -39,7 +39,7 @@ ReceiverMap::ReceiverMap(gpu::Device& device, const SceneData& scene, const Scen
     return;
   }
   for (std::size_t i = 0; i < buffers.draws().size(); ++i)
-    if (catchesCaustics(buffers.draws()[i])) draws_.push_back(i);
+    if (buffers.draws()[i].receives) draws_.push_back(i);
   const std::uint32_t pictures = viewCount() * kLayers, size = chooseSize(settings.size, pictures);
   surfaces_ =
       std::make_unique<SurfaceLayers>(device, buffers, size, viewCount(), kLayers, SurfaceLayers::Sides::kFacing);

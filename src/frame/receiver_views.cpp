@@ -76,7 +76,7 @@ ReceiverViews makeReceiverViews(const SceneData& scene, std::span<const SceneBuf
   if (generators.empty()) return made;
   Sides sides;
   for (const SceneBuffers::Draw& draw : draws)
-    if (catchesCaustics(draw)) sides.add(scene, draw, generators);
+    if (draw.receives) sides.add(scene, draw, generators);
   made.centre = sides.bounds.centre();
   // A little more than they need: what lies on the edge is seen. Where there is but a point, a sliver.
   made.half = std::max(0.5F * kMargin * sides.side(), kSliver * scene.bounds().radius());

@@ -8,9 +8,6 @@
 
 namespace nephroid {
 
-/// May a caustic fall on what is drawn? What bends light catches none in real time.
-inline bool catchesCaustics(const SceneBuffers::Draw& draw) { return draw.receives && !draw.generates; }
-
 /// Parallel views along the positive and negative axes, each for those sides of receivers that face it more than they
 /// face other axes. Sides that no generator lies before are left out, and of closed meshes those inside: the last
 /// stretch of every path of a caustic begins on a generator. All pictures are squares of one size about one place.

@@ -83,15 +83,15 @@ double lostShare(const Ledger& ledger, LossReason reason) {
 }
 
 TEST_F(CausticMapClosedForm, AHollowSphereDrawsItsRadialProfile) {
-  // Light passes four surfaces, is reflected totally at the cavity, or passes beside it. Facets are no smaller than the
-  // texels of the light's pictures, of which a search over the mesh starts.
+  // Light passes four surfaces, is reflected totally at the cavity, or passes beside it. Of what the far wall of the
+  // cavity reflects, which is 1 % of the flux, rings about the axis make 3 % of the profile. Facets are no smaller than
+  // the texels of the light's pictures, of which a search over the mesh starts.
   const HollowCase c{{.gap = 0.05, .view_radius = 0.1}, 0.025};
   const PlanePicture picture = renderPlane(makeHollowScene(c, 512), ballView(c.ball, 1024), "caustic-map",
-                                           {.samples = 1, .ledgers = true}, {"grid=512"});
+                                           {.samples = 1, .ledgers = true}, {"grid=512", "weaker-ways=true"});
   const double error = relativeL1(picture.ringMeans(c.ball.view_radius, 512), hollowIrradiance(c, 512));
   report("relative_l1", error);
-  // The flux that is not followed is nearly all of it: what the far walls of the cavity and the shell reflect.
-  EXPECT_LE(error, 0.1);
+  EXPECT_LE(error, 0.08);
   ASSERT_EQ(picture.ledgers.size(), 1U);
   EXPECT_LE(worstResidual(picture.ledgers), 1e-5);
   const double not_followed = lostShare(picture.ledgers[0], LossReason::kOtherWay);

@@ -36,6 +36,15 @@ inline Material makeMetal(vec3 color, float roughness = 0.0F) {
   return m;
 }
 
+/// Mirrors half of all light and scatters the other half, at any angle.
+inline Material makeHalfMirror() {
+  Material m = makeMetal(vec3(1.0F));
+  m.name = "half mirror";
+  m.metallic = 0.5F;
+  m.specular_factor = 0.0F;
+  return m;
+}
+
 /// Adds a mesh with its own material and one instance of it. @return the instance's index
 inline std::uint32_t addObject(SceneData& scene, Mesh mesh, Material material, mat4 placed = mat4(1.0F)) {
   mesh.material = static_cast<std::uint32_t>(scene.materials.size());

@@ -14,14 +14,27 @@
 
 namespace nephroid {
 
+/// Photons of one run of transport.
+struct CausticMap::Photons {
+  PhotonBuffer ends;
+  std::optional<Landings> landings;  ///< where some generators are receivers too
+};
+
+/// What becomes of photons where they end, and of those that paths leave on generators.
+struct CausticMap::Sink {
+  std::function<void(const PhotonBuffer&)> end, land;
+};
+
 /// What one point or direction of light sees, and what is deposited there.
 struct CausticMap::Pictures {
   std::vector<ViewRecord> emission;
   gpu::Buffer light;  ///< a LightRecord
   std::unique_ptr<SurfaceLayers> first, generators, receivers;
-  FluxMap map;
-  bool map_is_kept = false;          ///< what is in the map is what would be put there
-  std::deque<PhotonBuffer> photons;  ///< that are kept, one for each run of transport
+  /// Generators that are receivers too: in the picture of the others they would hide what light reaches through them.
+  std::unique_ptr<SurfaceLayers> both;
+  FluxMap map, map_of_both;
+  bool maps_are_kept = false;   ///< what is in them is what would be put there
+  std::deque<Photons> photons;  ///< that are kept, one for each run of transport
 };
 
 struct CausticMap::Source {
@@ -84,29 +97,36 @@ CausticMap::CausticMap(const RealtimeInputs& inputs, const CausticMapSettings& s
       cell_lists_(transport_.makeCellLists(settings.grid)),
       bands_(inputs.buffers.traits().specular.disperses ? makeBands(static_cast<int>(settings.bands))
                                                         : std::vector<Band>{{0.0F, vec3(1.0F)}}),
-      photons_(makePhotons()) {
+      photons_(std::make_unique<Photons>(makePhotons())) {
   makeSources();
 }
 
 CausticMap::~CausticMap() = default;
 
-PhotonBuffer CausticMap::makePhotons() const {
-  PhotonBuffer photons(inputs_.device, settings_.grid * settings_.grid, settings_.grid);
-  photons.batch = {.emitted_count = photons.capacity(),
-                   .grid_width = settings_.grid,
-                   .grid_height = settings_.grid,
-                   .band_count = static_cast<std::uint32_t>(bands_.size())};
+CausticMap::Photons CausticMap::makePhotons() const {
+  const auto make = [&] {
+    PhotonBuffer photons(inputs_.device, settings_.grid * settings_.grid, settings_.grid);
+    photons.batch = {.emitted_count = photons.capacity(),
+                     .grid_width = settings_.grid,
+                     .grid_height = settings_.grid,
+                     .band_count = static_cast<std::uint32_t>(bands_.size())};
+    return photons;
+  };
+  Photons photons{make(), std::nullopt};
+  if (!transport_.lands()) return photons;
+  for (PhotonBuffer& landings : photons.landings.emplace()) landings = make();
   return photons;
 }
 
 void CausticMap::makeSources() {
   const std::vector<SceneBuffers::Draw>& draws = inputs_.buffers.draws();
-  all_.clear(), generators_.clear(), receivers_.clear();
+  all_.clear(), generators_.clear(), receivers_.clear(), both_.clear();
   for (std::size_t i = 0; i < draws.size(); ++i) {
     all_.push_back(i);
     if (draws[i].generates) generators_.push_back(i);
     // What catches nothing still stops light.
     if (!draws[i].generates) receivers_.push_back(i);
+    if (draws[i].generates && draws[i].receives) both_.push_back(i);
   }
   generator_hull_ = makeGeneratorHull(inputs_.scene, inputs_.specular_alpha, mesh_trees_);
   scene_bounds_ = inputs_.scene.bounds();
@@ -178,6 +198,8 @@ CausticMap::Point CausticMap::makePoint(const LightView& view, Source& source, f
   if (point.is_new) {
     point.emission = makeEmissionViews(view.light, generator_hull_, scene_bounds_);
     source.most_flux = boundFlux(view.light, point.emission, bands_);
+    // The light of a path falls on all that it meets.
+    if (transport_.lands()) source.most_flux *= 1.0F + static_cast<float>(kLandings);
   }
   point.most_flux = source.most_flux;
   return point;
@@ -222,48 +244,65 @@ void CausticMap::record(gpu::CommandRecorder& recorder, const RealtimeSample& sa
     if (point.is_new) recordPictures(recorder, point, *pictures);
     if (pictures->emission.empty()) continue;
     Sinks sinks;
-    if (into_receivers)
-      sinks.emplace_back([&](const PhotonBuffer& photons) { receiver_map_->add(recorder, photons, point.weight); });
-    const auto into = [&](const DepositSurfaces& surfaces, std::uint32_t views, float weight, const FluxMap& map) {
-      sinks.emplace_back([&, surfaces, views, weight](const PhotonBuffer& photons) {
-        deposit(views).record(recorder, photons, surfaces, weight, settings_.splat_radius, inputs_.buffers.sampler(),
-                              map);
-      });
-    };
-    if (into_pixels) {
-      into(pixel_deposit_->surfaces(sample), 1, sample.weight * point.weight, pixel_deposit_->map());
-      emit(recorder, sample.index, point, sinks);
+    if (into_receivers) {
+      const auto add = [&](const PhotonBuffer& photons) { receiver_map_->add(recorder, photons, point.weight); };
+      sinks.push_back({add, add});
+    }
+    if (!into_pixels) {
+      recordMaps(recorder, sample, point, std::move(sinks));
       continue;
     }
-    const std::uint32_t views = point.view.light.view_count;
-    FluxMap& map = pictures->map;
-    if (!map.valid()) {
-      const std::uint32_t size = pictures->receivers->size();
-      map = FluxMap(inputs_.device, size, size, views, directions_);
-    }
-    const DepositSurfaces surfaces{pictures->receivers->views(), pictures->receivers->surfaces(),
-                                   settings_.receiver_layers};
-    const bool is_filled = !pictures->map_is_kept;
-    if (is_filled) {
-      map.clear(recorder, point.most_flux);
-      into(surfaces, views, 1.0F, map);
-    }
+    const auto add = [&](const PhotonBuffer& photons) {
+      deposit(1).record(recorder, photons, pixel_deposit_->surfaces(sample), sample.weight * point.weight,
+                        settings_.splat_radius, inputs_.buffers.sampler(), pixel_deposit_->map());
+    };
+    sinks.push_back({add, add});
     emit(recorder, sample.index, point, sinks);
-    if (is_filled) {
-      smooth(recorder, surfaces, views, map);
-      pictures->map_is_kept = keeps(point);
-    }
-    lookUp(sample.surfaces.isForeign(), views).record(recorder, sample, sample.weight * point.weight, surfaces, map);
   }
   if (!into_pixels) return;
   smooth(recorder, pixel_deposit_->surfaces(sample), 1, pixel_deposit_->map());
   pixel_deposit_->finish(recorder, sample);
 }
 
+void CausticMap::recordMaps(gpu::CommandRecorder& recorder, const RealtimeSample& sample, const Point& point,
+                            Sinks sinks) {
+  Pictures& pictures = *point.source->pictures;
+  struct Map {
+    DepositSurfaces surfaces;
+    FluxMap* flux;
+  };
+  std::vector<Map> maps{
+      {{pictures.receivers->views(), pictures.receivers->surfaces(), settings_.receiver_layers}, &pictures.map}};
+  if (pictures.both) maps.push_back({{pictures.both->views(), pictures.both->surfaces()}, &pictures.map_of_both});
+  const std::uint32_t views = point.view.light.view_count, size = pictures.receivers->size();
+  const bool are_filled = !pictures.maps_are_kept;
+  if (are_filled) {
+    for (const Map& map : maps) {
+      if (!map.flux->valid()) *map.flux = FluxMap(inputs_.device, size, size, views, directions_);
+      map.flux->clear(recorder, point.most_flux);
+    }
+    const auto addTo = [&](const Map& map) {
+      return [&](const PhotonBuffer& photons) {
+        deposit(views).record(recorder, photons, map.surfaces, 1.0F, settings_.splat_radius, inputs_.buffers.sampler(),
+                              *map.flux);
+      };
+    };
+    // Without a map of generators that are receivers too nothing lands on them.
+    sinks.push_back({addTo(maps.front()), addTo(maps.back())});
+  }
+  emit(recorder, sample.index, point, sinks);
+  for (const Map& map : maps) {
+    if (are_filled) smooth(recorder, map.surfaces, views, *map.flux);
+    lookUp(sample.surfaces.isForeign(), views)
+        .record(recorder, sample, sample.weight * point.weight, map.surfaces, *map.flux);
+  }
+  if (are_filled) pictures.maps_are_kept = keeps(point);
+}
+
 void CausticMap::recordPictures(gpu::CommandRecorder& recorder, const Point& point, Pictures& pictures) {
   const LightView& view = point.view;
   pictures.emission = point.emission;
-  pictures.map_is_kept = false;
+  pictures.maps_are_kept = false;
   pictures.photons.clear();
   if (pictures.emission.empty()) return;
   if (!pictures.light.valid())
@@ -278,31 +317,38 @@ void CausticMap::recordPictures(gpu::CommandRecorder& recorder, const Point& poi
   pictures.first->record(recorder, pictures.emission, all_);
   pictures.generators->record(recorder, pictures.emission, generators_);
   pictures.receivers->record(recorder, view.views, receivers_);
+  if (!transport_.lands()) return;
+  makeRoom(pictures.both, inputs_, size, map_views, 1);
+  pictures.both->record(recorder, view.views, both_);
 }
 
 bool CausticMap::keeps(const Point& point) const { return settings_.emits_once && !point.view.varies; }
 
 void CausticMap::emit(gpu::CommandRecorder& recorder, std::uint32_t sample, const Point& point, const Sinks& sinks) {
   if (sinks.empty()) return;
-  const auto use = [&](const PhotonBuffer& photons) {
-    for (const auto& sink : sinks) sink(photons);
+  const auto use = [&](const Photons& photons) {
+    for (const Sink& sink : sinks) {
+      sink.end(photons.ends);
+      if (!photons.landings) continue;
+      for (const PhotonBuffer& landings : *photons.landings) sink.land(landings);
+    }
   };
   if (!keeps(point)) {
     follow(
-        recorder, sample, point, [&]() -> PhotonBuffer& { return photons_; }, nullptr, use);
+        recorder, sample, point, [&]() -> Photons& { return *photons_; }, nullptr, use);
     return;
   }
-  std::deque<PhotonBuffer>& kept = point.source->pictures->photons;
+  std::deque<Photons>& kept = point.source->pictures->photons;
   if (kept.empty())
     follow(
-        recorder, 0, point, [&]() -> PhotonBuffer& { return kept.emplace_back(makePhotons()); }, nullptr,
-        [](const PhotonBuffer&) {});
-  for (const PhotonBuffer& photons : kept) use(photons);
+        recorder, 0, point, [&]() -> Photons& { return kept.emplace_back(makePhotons()); }, nullptr,
+        [](const Photons&) {});
+  for (const Photons& photons : kept) use(photons);
 }
 
 void CausticMap::follow(gpu::CommandRecorder& recorder, std::uint32_t sample, const Point& point,
-                        const std::function<PhotonBuffer&()>& next, PhotonLedger* ledger,
-                        const std::function<void(const PhotonBuffer&)>& use) {
+                        const std::function<Photons&()>& next, PhotonLedger* ledger,
+                        const std::function<void(const Photons&)>& use) {
   const Pictures& pictures = *point.source->pictures;
   const LightPictures followed{pictures.emission, generator_hull_.bounds(), scene_bounds_,      point.view.views,
                                *pictures.first,   *pictures.generators,     *pictures.receivers};
@@ -321,17 +367,29 @@ void CausticMap::follow(gpu::CommandRecorder& recorder, std::uint32_t sample, co
                               .flux = settings_.flux,
                               .first_guess = settings_.first_guess,
                               .account = ledger ? &ledger->account() : nullptr,
-                              .cell_lists = ledger ? nullptr : &cell_lists_};
+                              .cell_lists = ledger ? nullptr : &cell_lists_,
+                              .specular_alpha = inputs_.specular_alpha};
   for (transport.band_index = 0; transport.band_index < bands_.size(); ++transport.band_index) {
     transport.band = bands_[transport.band_index];
-    for (std::uint32_t v = 0; v < countOf(pictures.emission); ++v)
+    for (std::uint32_t v = 0; v < countOf(pictures.emission); ++v) {
+      const auto run = [&] {
+        const Photons& photons = next();
+        if (photons.landings && !ledger) transport.landings = &*photons.landings;
+        transport_.record(recorder, followed, pictures.light, 0, v, transport, photons.ends);
+        if (ledger) ledger->record(recorder, photons.ends, photons.ends.capacity(), 0, transport.branch);
+        use(photons);
+      };
+      transport.follows_weaker = false;
       for (transport.branch = 0; transport.branch <= last; ++transport.branch) {
         transport.is_last = transport.branch == last;
-        const PhotonBuffer& photons = next();
-        transport_.record(recorder, followed, pictures.light, 0, v, transport, photons);
-        if (ledger) ledger->record(recorder, photons, photons.capacity(), 0, transport.branch);
-        use(photons);
+        run();
       }
+      // Where nothing lets light through there is but one way.
+      if (!settings_.weaker_ways || last == 0) continue;
+      transport.branch = 1;
+      transport.is_last = transport.follows_weaker = true;
+      run();
+    }
   }
 }
 
@@ -344,7 +402,8 @@ std::vector<Ledger> CausticMap::account() {
   }
   constexpr std::uint32_t kMostViews = 6;
   const auto bands = static_cast<std::uint32_t>(bands_.size());
-  PhotonLedger ledger(inputs_.device, photons_.capacity(), bands * kMostViews * (2 + settings_.internal_reflections));
+  PhotonLedger ledger(inputs_.device, photons_->ends.capacity(),
+                      bands * kMostViews * (3 + settings_.internal_reflections));
   gpu::CommandRecorder recorder(inputs_.device);
   for (const Point& point : choosePoints(0)) {
     std::unique_ptr<Pictures>& pictures = point.source->pictures;
@@ -353,7 +412,7 @@ std::vector<Ledger> CausticMap::account() {
     if (point.is_new) recordPictures(recorder, point, *pictures);
     ledger.begin();
     follow(
-        recorder, 0, point, [&]() -> PhotonBuffer& { return photons_; }, &ledger, [](const PhotonBuffer&) {});
+        recorder, 0, point, [&]() -> Photons& { return *photons_; }, &ledger, [](const Photons&) {});
     recorder.submit();
     recorder.wait();
     Ledger of_point = ledger.read(0);
@@ -420,6 +479,15 @@ std::vector<ParamSpec> makeParams() {
        8,
        "",
        "inside a solid that are followed before light leaves it",
+       {}},
+      {"weaker-ways",
+       defaults.weaker_ways,
+       0,
+       0,
+       "",
+       "whether the weaker of two ways is followed too, the first time that light which enters a solid and leaves it "
+       "has "
+       "both: hollow bodies, several bodies behind one another",
        {}},
       {"iterations", number(defaults.iterations), 1, 64, "", "to find where a ray meets what bends it", {}},
       {"receiver-iterations", number(defaults.receiver_iterations), 1, 64, "", "to find where it ends", {}},
@@ -516,6 +584,7 @@ CausticMapSettings makeSettings(const ParamSet& params) {
   settings.layers = count("layers");
   settings.receiver_layers = count("receiver-layers");
   settings.internal_reflections = count("internal-reflections");
+  settings.weaker_ways = params.getBool("weaker-ways");
   settings.iterations = count("iterations");
   settings.receiver_iterations = count("receiver-iterations");
   settings.search = searchOf(params.getString("search"));

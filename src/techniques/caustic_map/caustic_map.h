@@ -36,7 +36,8 @@ struct CausticMapSettings {
   std::uint32_t layers = 4;           ///< surfaces behind one another that light is followed through, from the light
   std::uint32_t receiver_layers = 4;  ///< likewise that it may end on
   std::uint32_t internal_reflections = 2;
-  std::uint32_t iterations = 8;           ///< to find where a ray meets a generator,
+  bool weaker_ways = false;      ///< also follows the first way that light is sent along less than along another
+  std::uint32_t iterations = 8;  ///< to find where a ray meets a generator,
   std::uint32_t receiver_iterations = 8;  ///< and a receiver
   Search search = Search::kPlanes;
   Exit exit = Exit::kPlanes;
@@ -72,6 +73,8 @@ class CausticMap : public RealtimeTechnique {
   std::vector<Ledger> account();
 
  private:
+  struct Photons;
+  struct Sink;
   struct Pictures;
   /// What is followed in one sample of one source of light.
   struct Source;
@@ -87,17 +90,20 @@ class CausticMap : public RealtimeTechnique {
   /// @param ledger  null: nobody asks what becomes of them
   /// @param use     called when they are
   void follow(gpu::CommandRecorder& recorder, std::uint32_t sample, const Point& point,
-              const std::function<PhotonBuffer&()>& next, PhotonLedger* ledger,
-              const std::function<void(const PhotonBuffer&)>& use);
+              const std::function<Photons&()>& next, PhotonLedger* ledger,
+              const std::function<void(const Photons&)>& use);
   /// What becomes of the photons of one point.
-  using Sinks = std::vector<std::function<void(const PhotonBuffer&)>>;
+  using Sinks = std::vector<Sink>;
   /// Likewise without a ledger, or what was kept, if it goes anywhere.
   void emit(gpu::CommandRecorder& recorder, std::uint32_t sample, const Point& point, const Sinks& sinks);
   /// Puts all that the points send on receivers into their map, unless it is there already.
   /// @return  whether photons are to be added
   bool beginReceivers(gpu::CommandRecorder& recorder, const RealtimeSample& sample, const std::vector<Point>& points);
+  /// Puts what a point sends into the maps of its own view, unless it is there already, and looks them up.
+  /// @param sinks  where else it goes
+  void recordMaps(gpu::CommandRecorder& recorder, const RealtimeSample& sample, const Point& point, Sinks sinks);
   bool keeps(const Point& point) const;
-  PhotonBuffer makePhotons() const;
+  Photons makePhotons() const;
   LookUp& lookUp(bool foreign, std::uint32_t views);
   Deposit& deposit(std::uint32_t views);
   /// Blurs a map, if it is to be.
@@ -107,6 +113,7 @@ class CausticMap : public RealtimeTechnique {
   CausticMapSettings settings_;
   bool directions_;                                        ///< surfaces ask where light comes from
   std::vector<std::size_t> all_, generators_, receivers_;  ///< of the scene's draws
+  std::vector<std::size_t> both_;                          ///< generators that are receivers too
   MeshTrees mesh_trees_;
   GeneratorHull generator_hull_;
   Bounds scene_bounds_;
@@ -114,7 +121,7 @@ class CausticMap : public RealtimeTechnique {
   Transport transport_;
   CellLists cell_lists_;
   std::vector<Band> bands_;                      ///< one for all where nothing disperses light
-  PhotonBuffer photons_;                         ///< of what is not kept
+  std::unique_ptr<Photons> photons_;             ///< of what is not kept
   std::unique_ptr<PixelDeposit> pixel_deposit_;  ///< where pixels are deposited into
   std::vector<std::unique_ptr<Deposit>> deposits_;
   std::vector<std::unique_ptr<LowPass>> low_passes_;

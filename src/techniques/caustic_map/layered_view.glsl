@@ -110,6 +110,25 @@ Met walkToRay(Ray ray, uvec2 seen, vec3 place, float near) {
   return first.t > near && length(ray.origin + first.t * ray.dir - place) <= near ? first : none;
 }
 
+/// Where a ray leaves a closed body on whose surface it starts, over the surface from the triangles beside the first one:
+/// for ways out that the pictures do not show, next to edges and on sides that they see edge-on.
+Met walkToExit(Ray ray, Start start) {
+  Met best = Met(kFarAway, 0.0, 0.0, kNowhere, 0u);
+  InstanceRecord instance = fetchInstance(start.instance);
+  uvec4 beside = texelFetch(neighbour_table, texelOf(instance.first_triangle + start.triangle), 0);
+  for (uint k = 0u; k < 3u; ++k) {
+    uint first = k == 0u ? beside.x : k == 1u ? beside.y : beside.z;
+    if (first == kNowhere) continue;
+    Met met = walkToRay(ray, uvec2(start.instance + 1u, first), ray.origin, 0.0);
+    if (met.instance == kNowhere || met.triangle == start.triangle || met.t <= 0.0 || met.t >= best.t) continue;
+    Triangle corners = toWorld(instance, fetchTriangle(instance.first_triangle + met.triangle));
+    float out_of = dot(cross(corners.b - corners.a, corners.c - corners.a), ray.dir);
+    if ((instance.flags & kInstanceMirrored) != 0u) out_of = -out_of;
+    if (out_of > 0.0) best = met;
+  }
+  return best;
+}
+
 /// What a picture shows of a place.
 struct Look {
   bool inside;       // the picture has that place
@@ -226,11 +245,13 @@ float distanceAfter(uint step, float t_end) {
 /// On to the next step in which the ray passes from one side of what is seen to the other, or past the outline of
 /// something round, which bends away there.
 void marchOn(inout March march, Ray ray, float t_end, float t_enough, Pictures pictures, sampler2DArray depths) {
-  // A step more than to where the ray leaves the scene: what it meets there may bound the scene.
+  // A step more than to where the ray leaves the scene: what it meets there may bound the scene. That must be as long
+  // as depths may be off, or one short of it passes for none.
   while (march.candidates == 0u && march.step <= kSteps && march.t - march.slack <= t_enough) {
     ++march.step;
     march.t_before = march.t;
     march.t = distanceAfter(march.step, t_end);
+    if (march.step > kSteps) march.t = max(march.t, t_end + march.slack);
     Sides now = sidesOf(ray.origin + march.t * ray.dir, pictures, depths);
     uint behind = (march.behind & ~march.near) | (now.behind & march.near);
     march.candidates = ((behind ^ now.behind) & march.shown & now.shown) | (march.shown ^ now.shown);
@@ -266,13 +287,16 @@ float outlineIn(March march, Ray ray, Pictures pictures, sampler2DArray surfaces
 /// The nearest surface over all layers, by steps to where the ray may pass one, and Newton's method there.
 /// @param t_end     where the ray leaves the scene
 /// @param t_enough  what is met farther away does not count
+/// @param asks_near  also asks layers so near to the start that their depths, of the middles of texels, do not tell on
+///                   which side of them it is: light leaves the foot of a glass a fraction of a texel above a table
 /// @param hidden    set if it leaves the pictures before
 Met meetLayers(Ray ray, float t_end, float t_enough, Start start, Pictures pictures, usampler2DArray seen_layers,
-               sampler2DArray surfaces, sampler2DArray depths, uint iterations, inout bool hidden) {
+               sampler2DArray surfaces, sampler2DArray depths, uint iterations, bool asks_near, inout bool hidden) {
   Met best = Met(kFarAway, 0.0, 0.0, kNowhere, 0u);
   Sides first = sidesOf(ray.origin, pictures, depths);
   March march =
-      March(0u, 0.0, 0.0, first.shown, first.behind, first.near, 2.0 * first.texel_size, 0u, 0u, 0u, 0u, false);
+      March(0u, 0.0, 0.0, first.shown, first.behind, first.near, 2.0 * first.texel_size, asks_near ? first.near : 0u,
+            0u, 0u, 0u, false);
   while (best.instance == kNowhere &&
          ((march.step <= kSteps && march.t - march.slack <= t_enough) || march.candidates != 0u)) {
     marchOn(march, ray, t_end, t_enough, pictures, depths);
@@ -290,7 +314,8 @@ Met meetLayers(Ray ray, float t_end, float t_enough, Start start, Pictures pictu
         float first = is_from_behind ? march.t_before : end;
         if (is_outlined) first = outlineIn(march, ray, pictures, surfaces, layer);
         for (uint attempt = 0u; attempt < 2u && !is_done; ++attempt) {
-          Met met = approach(ray, first, march.t_before, march.t, start, pictures, seen_layers, surfaces, layer,
+          float most = march.step == 0u ? march.slack : march.t;
+          Met met = approach(ray, first, march.t_before, most, start, pictures, seen_layers, surfaces, layer,
                              iterations);
           // What is met lies in the step, or Newton's method has led to another place.
           bool is_in_step = met.t >= march.t_before - march.slack && met.t <= march.t + march.slack;

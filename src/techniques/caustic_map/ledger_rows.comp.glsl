@@ -30,6 +30,7 @@ void main() {
     sums[5] += a.internal;
     sums[6] += a.normal;
     sums[7] += a.microfacet;
+    sums[8] += a.landed;
     uint outcome = (photons[i].light_band_flags & 255u) >> kOutcomeShift;
     sums[kAccountKinds + min(outcome, kOutcomeCount - 1u)] += photons[i].flux;
   }

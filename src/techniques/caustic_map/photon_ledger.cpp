@@ -32,6 +32,7 @@ void addSums(Ledger& ledger, std::span<const vec3> sums) {
   lost(ledger, LossReason::kInternalReflections) += dvec3(sums[5]);
   lost(ledger, LossReason::kShadingNormal) += dvec3(sums[6]);
   lost(ledger, LossReason::kMicrofacet) += dvec3(sums[7]);
+  ledger.deposited += dvec3(sums[8]);
   const std::span<const vec3> ends = sums.subspan(kAccountKinds);
   ledger.deposited += dvec3(ends[kOutcomeDeposited]);
   ledger.missed += dvec3(ends[kOutcomeMissed]);

@@ -33,6 +33,7 @@ layout(constant_id = 25) const uint kReceiverViews = 1u;
 layout(constant_id = 26) const uint kReceiverLayers = 1u;
 layout(constant_id = 27) const bool kListed = false;
 layout(constant_id = 28) const bool kFluxEq6 = false;
+layout(constant_id = 29) const bool kLands = false;  // some generators have diffuse lobes too
 layout(local_size_x = 8, local_size_y = 8) in;
 layout(scalar, set = 0, binding = 8) readonly buffer Lights { LightRecord lights[]; };
 layout(set = 0, binding = 9) uniform usampler2DArray first_seen;  // of the emission's views: all that there is
@@ -49,6 +50,8 @@ layout(scalar, set = 0, binding = 15) writeonly buffer Accounts { PhotonAccount 
 
 layout(scalar, set = 0, binding = 20) buffer Forks { Fork forks[]; };
 layout(scalar, set = 0, binding = 21) buffer ForkInteriors { Interior fork_interiors[]; };
+layout(scalar, set = 0, binding = 22) writeonly buffer FirstLandings { Photon first_landings[]; };
+layout(scalar, set = 0, binding = 23) writeonly buffer SecondLandings { Photon second_landings[]; };
 
 /// A photon on its way.
 struct Flight {
@@ -60,7 +63,9 @@ struct Flight {
   uint chances;         // to leave what it is inside of, that it passed
   bool decided;         // the branch has nothing more to say
   bool forks;           // the next branch goes another way than this one
+  bool left_weaker;     // went past, or along, the first weaker way that no branch takes
   int closed;           // closed solids that it is inside of
+  uint landings;        // photons that were left on the way
   float last_distance;  // m, since the last event
   vec3 place;           // on what was met last
   vec3 normal;          // of what was bent at last, and the direction before
@@ -73,34 +78,67 @@ struct Choice {
   Way way;
   vec3 not_followed;  // weight of the other way if no branch takes it
   bool is_chance;     // to leave
+  bool is_weaker;     // the pass follows it from here on
 };
+
+bool isLast() { return (push.role & kRoleIsLast) != 0u; }
+bool followsWeaker() { return (push.role & kRoleIsWeaker) != 0u; }
+
+/// Whether what becomes of the flight from here on is this pass's: branches b > k share the way past the first k
+/// chances, and what ends there is the one of branch k + 1. What goes before the weaker way is the branch's.
+bool isOwn(Flight flight) {
+  return followsWeaker() ? flight.left_weaker : flight.decided || push.branch == flight.chances + 1u;
+}
 
 /// Goes on along the branch, so that no two branches take the same path: at the first event one is reflected and the
 /// others are let in; of those, branch b leaves at its b-th chance, that is where something is let through from the
 /// inside, and is reflected at those before. Total reflection is no chance and is followed by all. Elsewhere (at what is
-/// met after leaving, or inside) the way that carries more is followed, and the other is lost.
+/// met after leaving, or inside) the way that carries more is followed. The other is lost, but for the first one of
+/// branch 1, which a pass of its own may follow (TransportSettings::follows_weaker).
 Choice chooseWay(Way reflected, Way transmitted, uint events, bool is_inside, inout Flight flight) {
   if (events == 0u) {
     flight.decided = push.branch == 0u;
     flight.forks = flight.decided && largest(transmitted.weight) > 0.0;
-    vec3 rest = flight.decided && push.is_last != 0u ? transmitted.weight : vec3(0.0);
-    return Choice(flight.decided ? reflected : transmitted, rest, false);
+    vec3 rest = flight.decided && isLast() ? transmitted.weight : vec3(0.0);
+    return Choice(flight.decided ? reflected : transmitted, rest, false, false);
   }
   bool can_leave = largest(transmitted.weight) > 0.0;
   if (is_inside && can_leave && !flight.decided) {
     ++flight.chances;
     flight.decided = flight.chances == push.branch;
     flight.forks = flight.decided && largest(reflected.weight) > 0.0;
-    vec3 rest = flight.decided && push.is_last != 0u ? reflected.weight : vec3(0.0);
-    return Choice(flight.decided ? transmitted : reflected, rest, true);
+    vec3 rest = flight.decided && isLast() ? reflected.weight : vec3(0.0);
+    return Choice(flight.decided ? transmitted : reflected, rest, true, false);
   }
   bool reflects = largest(reflected.weight) >= largest(transmitted.weight);
-  return Choice(reflects ? reflected : transmitted, reflects ? transmitted.weight : reflected.weight, false);
+  Way stronger = transmitted, weaker = reflected;
+  if (reflects) {
+    stronger = reflected;
+    weaker = transmitted;
+  }
+  bool is_fork = push.branch == 1u && !flight.left_weaker && largest(weaker.weight) > 0.0;
+  flight.left_weaker = flight.left_weaker || is_fork;
+  if (!is_fork || !followsWeaker()) return Choice(stronger, weaker.weight, false, false);
+  flight.decided = true;
+  return Choice(weaker, vec3(0.0), false, true);
 }
 
-/// Whether what becomes of the flight from here on is this branch's: branches b > k share the way past the first k
-/// chances, and what ends there is the one of branch k + 1.
-bool isOwn(Flight flight) { return flight.decided || push.branch == flight.chances + 1u; }
+Photon describe(Flight flight, uint index) {
+  Photon photon;
+  bool valid = flight.outcome == kOutcomeDeposited;
+  uint flags = (valid ? kPhotonValid : 0u) | (flight.outcome == kOutcomeEscaped ? kPhotonLeftScene : 0u) |
+               (flight.outcome << kOutcomeShift);
+  photon.position = valid ? flight.place : flight.path.ray.origin;
+  photon.path_length = flight.last_distance;
+  photon.direction = flight.path.ray.dir;
+  photon.light_band_flags = packLightBandFlags(push.light, push.band, flags);
+  photon.flux = flight.path.throughput;
+  photon.index = index;
+  photon.chain = flight.chain;
+  photon.footprint_major = photon.footprint_minor = 0.0;
+  photon.footprint_orientation = 0u;
+  return photon;
+}
 
 /// Follows the flight to a surface, through what absorbs.
 Encounter arrive(inout Flight flight, Met met) {
@@ -112,20 +150,55 @@ Encounter arrive(inout Flight flight, Met met) {
   return e;
 }
 
+/// Is what a surface takes and sends nowhere this branch's?
+bool ownsRest(Flight flight, Choice choice) {
+  if (followsWeaker()) return flight.left_weaker && !choice.is_weaker;
+  if (flight.path.events == 0u) return push.branch == 0u;
+  return choice.is_chance ? flight.decided : isOwn(flight);
+}
+
+bool isSpecular(SurfaceOptics optics) { return optics.alpha < push.specular_alpha; }
+
+/// Does some of the light that a generator gets come back from it by a lobe of class D?
+bool isReceiver(MaterialPoint m) {
+  return !isSpecular(m.optics) || (m.base_weight > 0.0 && largest(m.optics.base) > 0.0);
+}
+
+/// Does the flight leave a photon on the diffuse lobe of a generator that it meets? Of the light straight from the
+/// lamp none is left: that is no caustic.
+bool lands(Flight flight, MaterialPoint m, Choice choice) {
+  return kLands && flight.path.events > 0u && isReceiver(m) && ownsRest(flight, choice) && flight.landings < kLandings;
+}
+
+/// Leaves it there, with all the flux that arrives: the lobe takes of it what the interface lets through.
+void land(inout Flight flight, Encounter e) {
+  if (!kAccounts) {
+    Photon photon = describe(flight, flight.cell);
+    photon.position = e.surface.position;
+    photon.chain = hashChain(flight.chain, 2u * flight.path.instance);
+    if (flight.landings == 0u) first_landings[flight.cell] = photon;
+    else second_landings[flight.cell] = photon;
+  }
+  ++flight.landings;
+}
+
 /// Enters into the account where the rest stays of what a surface does not send along a way that is followed.
 void accountFor(inout Flight flight, Encounter e, SurfaceOptics optics, Scattered scattered, Way reflected,
                 Way transmitted, Choice choice) {
-  vec3 flux = flight.path.throughput;
-  bool is_first = flight.path.events == 0u;
-  bool own = is_first ? push.branch == 0u : choice.is_chance ? flight.decided : isOwn(flight);
-  if (!own) return;
-  float cos_o = max(-dot(flight.path.ray.dir, e.surface.shading), 0.0);
-  float fresnel = interfaceFresnel(optics, cos_o);
-  vec3 interface_share = interfaceReflectance(optics, cos_o, fresnel) + interfaceTransmittance(optics, fresnel);
+  // The branch has it among what is not followed.
+  if (choice.is_weaker) flight.account.other_way -= flight.path.throughput * choice.way.weight;
+  if (!ownsRest(flight, choice)) return;
+  vec3 flux = flight.path.throughput, interface_share = vec3(0.0);
+  if (isSpecular(optics)) {
+    float cos_o = max(-dot(flight.path.ray.dir, e.surface.shading), 0.0);
+    float fresnel = interfaceFresnel(optics, cos_o);
+    interface_share = interfaceReflectance(optics, cos_o, fresnel) + interfaceTransmittance(optics, fresnel);
+  }
   vec3 scattered_share = scattered.reflected_weight + scattered.transmitted_weight / radianceScale(optics);
   vec3 rest = flux * (1.0 - interface_share);
-  if (e.material.base_weight <= 0.0) flight.account.absorbed += rest;
-  else if (is_first) flight.account.blocked += rest;
+  if (!isReceiver(e.material)) flight.account.absorbed += rest;
+  else if (flight.path.events == 0u) flight.account.blocked += rest;
+  else if (lands(flight, e.material, choice)) flight.account.landed += rest;
   else flight.account.diffuse += rest;
   flight.account.microfacet += flux * (interface_share - scattered_share);
   flight.account.normal += flux * (scattered_share - reflected.weight - transmitted.weight);
@@ -200,6 +273,8 @@ void bend(inout Flight flight, Met met) {
   Scattered scattered = kSceneHasRoughSpecular && optics.alpha > 0.0
                             ? scatterRough(optics, flight.path.ray.dir, e.surface.shading, u)
                             : scatterSmooth(optics, flight.path.ray.dir, e.surface.shading);
+  // Textures may make a part of it as rough as a receiver.
+  if (!isSpecular(optics)) scattered.reflected_weight = scattered.transmitted_weight = vec3(0.0);
   Way reflected = reflection(scattered, e.surface), transmitted = transmission(scattered, e.surface);
   // Of flux, not of radiance: it does not know the index.
   transmitted.weight /= radianceScale(optics);
@@ -207,8 +282,9 @@ void bend(inout Flight flight, Met met) {
   flight.from = flight.path.ray.dir;
   Choice choice = chooseWay(reflected, transmitted, events, e.crossing.is_solid && !e.crossing.entering, flight);
   if (kAccounts) accountFor(flight, e, optics, scattered, reflected, transmitted, choice);
+  if (lands(flight, e.material, choice)) land(flight, e);
   bool is_fork = choice.is_chance && flight.forks;
-  if (kListed && push.branch > 0u && push.is_last == 0u && is_fork) keepFork(flight, e, reflected);
+  if (kListed && push.branch > 0u && !isLast() && is_fork) keepFork(flight, e, reflected);
   flight.chain = hashChain(flight.chain, 2u * met.instance + (choice.way.through ? 1u : 0u));
   take(flight.path, choice.way, e.surface, e.crossing, false);
   if (largest(abs(flight.path.throughput)) <= 0.0) flight.outcome = events == 0u ? kOutcomeNoWay : kOutcomeAbsorbed;
@@ -276,22 +352,24 @@ Met meetNext(inout Flight flight, Pictures generators, Pictures receivers) {
   bool has_entered = flight.path.events == 1u && dot(ray.dir, flight.normal) < 0.0 && generators.layer_count > 1u;
   if (kExit == kExitWyman && has_entered)
     met = meetBackFace(ray, flight.normal, flight.from, generators, generator_seen, generator_surfaces);
-  else
+  else  // What is near is the surface that it starts from, as a rule: the first step is to tell.
     met = meetLayers(ray, t_end, kFarAway, start, generators, generator_seen, generator_surfaces, generator_depths,
-                     push.iterations, hidden);
+                     push.iterations, false, hidden);
+  // From inside a closed solid there is no way but through its surface.
+  if (kExit == kExitPlanes && flight.closed > 0 && met.instance == kNowhere) met = walkToExit(ray, start);
   // The pictures hold all generators, so what leaves them meets none; what starts beside them may.
   if (hidden) hidden = !placeInPictures(generators, ray.origin).inside;
   t_end = leaveBox(ray, push.scene_lower, push.scene_upper);
   Met receiver;
   if (kSearch == kSearchPlanes) {
     receiver = meetLayers(ray, t_end, met.t, start, receivers, receiver_seen, receiver_surfaces, receiver_depths,
-                          push.receiver_iterations, hidden_receiver);
+                          push.receiver_iterations, true, hidden_receiver);
     flight.place = ray.origin + receiver.t * ray.dir;
   } else {
     receiver = searchReceiver(ray, t_end, push.first_guess, receivers, receiver_seen, receiver_surfaces, 0u,
                               push.receiver_iterations, flight.place);
   }
-  // From inside a closed solid there is no way but through its surface: a receiver farther on is not met.
+  // A receiver beyond a surface that is not found is not met.
   bool is_enclosed = flight.closed > 0 && met.instance == kNowhere;
   if (receiver.t < met.t) met = receiver;
   if (is_enclosed || met.instance == kNowhere) {
@@ -318,30 +396,14 @@ void leaveToOthers(inout Flight flight) {
   }
 }
 
-Photon describe(Flight flight, uint index) {
-  Photon photon;
-  bool valid = flight.outcome == kOutcomeDeposited;
-  uint flags = (valid ? kPhotonValid : 0u) | (flight.outcome == kOutcomeEscaped ? kPhotonLeftScene : 0u) |
-               (flight.outcome << kOutcomeShift);
-  photon.position = valid ? flight.place : flight.path.ray.origin;
-  photon.path_length = flight.last_distance;
-  photon.direction = flight.path.ray.dir;
-  photon.light_band_flags = packLightBandFlags(push.light, push.band, flags);
-  photon.flux = flight.path.throughput;
-  photon.index = index;
-  photon.chain = flight.chain;
-  photon.footprint_major = photon.footprint_minor = 0.0;
-  photon.footprint_orientation = 0u;
-  return photon;
-}
-
 /// @return  false: this thread has none
 bool chooseCell(out uvec2 cell) {
   cell = gl_GlobalInvocationID.xy;
   if (!kListed) return cell.x < push.grid && cell.y < push.grid;
+  uint list = followsWeaker() ? kWeakerList : push.branch;
   uint i = (gl_WorkGroupID.y * kMostGroups + gl_WorkGroupID.x) * kListGroup + gl_LocalInvocationIndex;
-  if (i >= heads[push.branch].count) return false;
-  uint index = listed[firstOfList(push.branch, push.grid * push.grid) + i];
+  if (i >= heads[list].count) return false;
+  uint index = listed[firstOfList(list, push.grid * push.grid) + i];
   cell = uvec2(index % push.grid, index / push.grid);
   return true;
 }
@@ -358,9 +420,9 @@ void main() {
   uint seed = hashChain(push.seed, index);
   Path path = Path(ray, flux, false, false, 0u, seed, push.wavelength_nm, kNowhere, 0u, kInTheOpen);
   vec3 none = vec3(0.0);
-  PhotonAccount account = PhotonAccount(push.branch == 0u ? flux : none, none, none, none, none, none, none, none);
+  PhotonAccount account = PhotonAccount(push.branch == 0u ? flux : none, none, none, none, none, none, none, none, none);
   Flight flight =
-      Flight(path, index, 0u, 0u, kOutcomeDeposited, 0u, false, false, 0, 0.0, ray.origin, none, none, account);
+      Flight(path, index, 0u, 0u, kOutcomeDeposited, 0u, false, false, false, 0, 0u, 0.0, ray.origin, none, none, account);
 
   Pictures generators = Pictures(0u, kGeneratorViews, kGeneratorLayers, push.generator_size);
   Pictures receivers = Pictures(kGeneratorViews, kReceiverViews, kReceiverLayers, push.receiver_size);
@@ -398,5 +460,7 @@ void main() {
   photons[index] = describe(flight, index);
   if (kAccounts) accounts[index] = flight.account;
   // Where no way forks here, branches beyond have nothing to say.
-  if (kListed && push.is_last == 0u && flight.forks) addToList(push.branch + 1u, push.grid * push.grid, index);
+  uint cells = push.grid * push.grid;
+  if (kListed && !isLast() && flight.forks) addToList(push.branch + 1u, cells, index);
+  if (kListed && !followsWeaker() && flight.left_weaker) addToList(kWeakerList, cells, index);
 }

@@ -1,6 +1,7 @@
 // From the light to where its photons end, in pictures that it takes ([shah-caustics-mapping], §III-B to D).
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <map>
 #include <span>
@@ -43,6 +44,9 @@ enum class CellFlux : std::uint8_t { kBeam, kEq6 };
 
 struct CellLists;
 
+/// Photons on diffuse lobes of generators, which light meets on its way: the first of each path, the second.
+using Landings = std::array<PhotonBuffer, kLandings>;
+
 /// How light is followed.
 struct TransportSettings {
   std::uint32_t grid = 256;  ///< cells along a side of each of the emission's views
@@ -68,7 +72,14 @@ struct TransportSettings {
   /// valid. All branches must be recorded one after the other, from 0 on, with these settings. Not with `account`, to
   /// which all cells count.
   const CellLists* cell_lists = nullptr;
-  bool is_last = false;  ///< no branch beyond this one is followed: for the account
+  /// Where photons on generators are written, as many each as there are cells; those of other cells are zeros. Not
+  /// with `account`. Where no generator is a receiver too (Transport::lands) they are not touched.
+  const Landings* landings = nullptr;
+  float specular_alpha = kDefaultSpecularAlpha;  ///< an interface of a larger one is a diffuse lobe
+  bool is_last = false;                          ///< no branch beyond this one is followed: for the account
+  /// Of branch 1: goes on along the weaker of two ways where the branch went along the stronger one, the first time
+  /// that no other branch takes both. By lists it is to be recorded after all branches.
+  bool follows_weaker = false;
 };
 
 /// What branches leave to one another: cells, and flights where they fork.
@@ -82,6 +93,9 @@ class Transport {
   /// @throws ResourceError
   Transport(gpu::Device& device, const SceneBuffers& buffers);
 
+  /// Is some generator a receiver too?
+  bool lands() const { return lands_; }
+
   /// For grids of so many cells along a side.
   CellLists makeCellLists(std::uint32_t grid) const;
 
@@ -94,6 +108,8 @@ class Transport {
               std::uint32_t light, std::uint32_t view, const TransportSettings& settings, const PhotonBuffer& photons);
 
  private:
+  /// Makes photons zeros.
+  static void clear(gpu::CommandRecorder& recorder, const PhotonBuffer& photons);
   /// Makes the first branch's list.
   void listCells(gpu::CommandRecorder& recorder, const LightPictures& pictures, const gpu::Buffer& lists,
                  const TransportPush& push);
@@ -101,6 +117,7 @@ class Transport {
 
   gpu::Device& device_;
   const SceneBuffers& buffers_;
+  bool lands_;
   std::map<std::vector<std::uint32_t>, gpu::ComputePipeline> pipelines_;  ///< by what they are compiled for
   gpu::ComputePipeline list_cells_;
   gpu::Buffer views_, nothing_;  ///< the latter where something has to be bound

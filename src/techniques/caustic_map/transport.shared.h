@@ -27,15 +27,16 @@ struct PhotonAccount {
   vec3 emitted;     // of the first branch: the light's flux through the cell
   vec3 blocked;     // by the diffuse lobe of the generator that is met first
   vec3 absorbed;    // in media and by generators
-  vec3 diffuse;     // share of the diffuse lobes of generators that are met later
+  vec3 diffuse;     // share of the diffuse lobes of generators that are met later and get no photon
   vec3 other_way;   // where a branch follows one of two ways and no branch the other
   vec3 internal;    // still inside where the last branch leaves
   vec3 normal;      // sent through the true surface by an interpolated normal
   vec3 microfacet;  // met more than one facet
+  vec3 landed;      // share of the diffuse lobes of generators that get one
 };
 
 /// Words of a record of sums: each member of PhotonAccount in order, then the photons' flux by outcome.
-NEPHROID_CONST uint kAccountKinds = 8u;
+NEPHROID_CONST uint kAccountKinds = 9u;
 NEPHROID_CONST uint kLedgerKinds = kAccountKinds + kOutcomeCount;
 /// Photons that a thread adds up: few enough that rounding does not count.
 NEPHROID_CONST uint kLedgerRow = 64u;
@@ -49,8 +50,19 @@ NEPHROID_CONST uint kSearchMarch = 4u;
 NEPHROID_CONST uint kExitPlanes = 0u;
 NEPHROID_CONST uint kExitWyman = 1u;
 
+/// Photons that a branch may leave on diffuse lobes of generators on its way: the path goes on from each, so it has
+/// photons besides the one at its end. Between two surfaces that send on half of what they get, three quarters of what
+/// there is end so.
+NEPHROID_CONST uint kLandings = 2u;
+
 /// Branches that may be followed by lists of cells.
 NEPHROID_CONST uint kMostBranches = 16u;
+/// The list of cells whose weaker way is followed, after those of the branches.
+NEPHROID_CONST uint kWeakerList = kMostBranches;
+NEPHROID_CONST uint kCellLists = kMostBranches + 1u;
+/// What a pass is: the last of those of branches; one that follows the weaker way.
+NEPHROID_CONST uint kRoleIsLast = 1u;
+NEPHROID_CONST uint kRoleIsWeaker = 2u;
 /// Cells of a list that a group of threads follows.
 NEPHROID_CONST uint kListGroup = 64u;
 /// Groups along one axis, which every device allows.
@@ -102,7 +114,7 @@ struct TransportPush {
   uint iterations;
   uint receiver_iterations;
   float first_guess;    // m; of receiver_search.glsl
-  uint is_last;         // no other branch has what stays inside
+  uint role;            // kRole…
   float wavelength_nm;  // of the band; 0: nothing disperses
   vec3 band_weight;     // of the light's flux
   uint band;
@@ -111,6 +123,7 @@ struct TransportPush {
   vec3 generator_upper;
   vec3 scene_lower;
   vec3 scene_upper;
+  float specular_alpha;  // an interface of a larger one is a diffuse lobe
 };
 
 NEPHROID_NAMESPACE_END

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <map>
+#include <utility>
 #include <vector>
 
 #include "frame/emission.shared.h"
@@ -87,18 +88,28 @@ class LightRig {
     return read();
   }
 
-  /// Of all views and of branches 0 to `last`.
+  /// Of all views and of branches 0 to `last`, and of the weaker way if that is to be followed.
   Ledger ledger(std::uint32_t last, TransportSettings settings = {}) {
-    PhotonLedger ledger(device_, grid_ * grid_, viewCount() * (last + 1));
+    PhotonLedger ledger(device_, grid_ * grid_, viewCount() * (last + 2));
+    const bool follows_weaker = std::exchange(settings.follows_weaker, false);
     settings.grid = grid_;
     settings.account = &ledger.account();
     recorder_.begin();
-    for (std::uint32_t view = 0; view < viewCount(); ++view)
-      for (settings.branch = 0; settings.branch <= last; ++settings.branch) {
-        settings.is_last = settings.branch == last;
+    for (std::uint32_t view = 0; view < viewCount(); ++view) {
+      const auto run = [&] {
         transport_.record(recorder_, pictures(), lights_, 0, view, settings, photons_);
         ledger.record(recorder_, photons_, grid_ * grid_, 0, settings.branch);
+      };
+      settings.follows_weaker = false;
+      for (settings.branch = 0; settings.branch <= last; ++settings.branch) {
+        settings.is_last = settings.branch == last;
+        run();
       }
+      if (!follows_weaker) continue;
+      settings.branch = 1;
+      settings.is_last = settings.follows_weaker = true;
+      run();
+    }
     recorder_.submit();
     return ledger.read(0);
   }

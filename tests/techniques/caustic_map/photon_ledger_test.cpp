@@ -45,6 +45,7 @@ TEST_F(PhotonLedgerTest, ClosesForSolidsAndMetal) {
     scene.lights.push_back(test::makeSun(vec3(-0.7F, -1, 0.2F), vec3(2, 3, 5)));
     LightRig rig(device(), scene);
     for (const std::uint32_t last : {0U, 1U, 4U}) expectCloses(rig.ledger(last));
+    expectCloses(rig.ledger(2, {.follows_weaker = true}));
   }
 }
 
@@ -122,6 +123,62 @@ TEST_F(PhotonLedgerTest, AgreesWithTheReferenceForRoughBalls) {
   }
 }
 
+TEST_F(PhotonLedgerTest, LightReachesWhatIsNearerThanATexel) {
+  // A millimetre under a slab that bends nothing, in pictures with texels of 5 cm across which depths differ as much.
+  for (const bool is_sun : {true, false}) {
+    SCOPED_TRACE(is_sun ? "sun" : "point");
+    SceneData scene;
+    test::addObject(scene, test::makeFloor(4.0), test::makeDiffuse(vec3(0.6F)));
+    test::addObject(scene, makeBox("slab", dvec3(-1, 0.001, -1), dvec3(1, 0.3, 1)), test::makeGlass(1.0F));
+    scene.lights.push_back(is_sun ? test::makeSun(vec3(1, -1, 0.3F), vec3(3))
+                                  : test::makePoint(vec3(-2, 2.3F, -0.6F), vec3(9)));
+    LightRig rig(device(), scene, 64);
+    const Ledger ledger = rig.ledger(1);
+    expectCloses(ledger);
+    EXPECT_NEAR(ledger.deposited.y / (ledger.emitted.y - ledger.missed.y - ledger.blocked.y), 1.0, 1e-3)
+        << formatLedgers({ledger});
+  }
+}
+
+TEST_F(PhotonLedgerTest, FindsTheWayOutBesideEdges) {
+  // The pictures show little of sides that are seen edge-on, and a ray beside an edge leaves within a texel.
+  SceneData scene = test::makeBallScene(test::makeGlass(1.5F));
+  scene.instances.pop_back();
+  test::addObject(scene, makeBox("block", dvec3(-0.5, 0.2, -0.3), dvec3(0.5, 1, 0.3)), test::makeGlass(1.5F));
+  scene.lights.push_back(test::makeSun(vec3(0, -1, 0), vec3(5)));
+  for (const int degree : {38, 45, 61, 72}) {
+    SCOPED_TRACE(degree);
+    const float angle = radians(static_cast<float>(degree));
+    scene.lights[0].direction = normalize(vec3(std::cos(angle), -2.0F, std::sin(angle)));
+    LightRig rig(device(), scene, 64);
+    const Ledger ledger = rig.ledger(1);
+    expectCloses(ledger);
+    EXPECT_LT(lostTo(ledger, LossReason::kHidden).y, 1e-3 * ledger.emitted.y);
+  }
+}
+
+TEST_F(PhotonLedgerTest, FollowsTheWeakerWay) {
+  // Two slabs, one on top of the other, squarely: at the second one R = 0.04 of what the first lets through is
+  // reflected and lost, and again of what goes in at its top. The first of these is followed back up.
+  SceneData scene;
+  test::addObject(scene, test::makeFloor(4.0), test::makeDiffuse(vec3(0.6F)));
+  for (const double y : {0.5, 1.0})
+    test::addObject(scene, makeBox("slab", dvec3(-1, y, -1), dvec3(1, y + 0.3, 1)), test::makeGlass(1.5F));
+  scene.lights.push_back(test::makeSun(vec3(0, -1, 0), vec3(3)));
+  LightRig rig(device(), scene, 64);
+  const Ledger strong = rig.ledger(1), both = rig.ledger(1, {.follows_weaker = true});
+  expectCloses(both);
+  const double through = 0.96 * 0.96, back = through * 0.04;
+  const auto otherWay = [&](const Ledger& ledger) {
+    return lostTo(ledger, LossReason::kOtherWay).y / (ledger.emitted.y - ledger.blocked.y - ledger.missed.y);
+  };
+  EXPECT_NEAR(otherWay(strong), back + through * 0.96 * 0.04, 1e-3);
+  // Up through the first slab it is reflected twice more, the weaker way, which is lost.
+  EXPECT_NEAR(otherWay(both), through * 0.96 * 0.04 + back * (0.04 + 0.96 * 0.04), 1e-3);
+  EXPECT_NEAR((both.escaped.y - strong.escaped.y) / (both.emitted.y - both.blocked.y - both.missed.y),
+              back * 0.96 * 0.96, 1e-3);
+}
+
 TEST_F(PhotonLedgerTest, EqSixLosesAThirdOfWhatABallGets) {
   // A mirror that takes nothing: what leaves it is what came. Under a sun the mean of cos θ over a disc of rays, with
   // sin θ = h, is ∫ √(1 − h²) 2h dh = 2/3.
@@ -135,6 +192,76 @@ TEST_F(PhotonLedgerTest, EqSixLosesAThirdOfWhatABallGets) {
   };
   EXPECT_NEAR(reflected(CellFlux::kBeam) / (3.0 * kPi), 1.0, 2e-3);
   EXPECT_NEAR(reflected(CellFlux::kEq6) / (3.0 * kPi), 2.0 / 3.0, 2e-3);
+}
+
+/// Two sheets that meet below at an angle, the bisector upright. Light along it is mirrored 180°/angle times before it
+/// leaves, since the wedge's images about its edge close the circle.
+SceneData makeWedge(float angle_deg, const Material& material) {
+  SceneData scene;
+  for (const double side : {-1.0, 1.0}) {
+    const double half = 0.5 * radians(angle_deg);
+    const dvec3 up(side * std::sin(half), std::cos(half), 0);
+    test::addObject(scene, makeRectangle("sheet", up, up, dvec3(0, 0, 4)), material);
+  }
+  scene.lights.push_back(test::makeSun(vec3(0, -1, 0), vec3(3)));
+  return scene;
+}
+
+TEST_F(PhotonLedgerTest, LightLandsOnWhatMirrorsIt) {
+  // Of what arrives, each meeting scatters half and sends on half. The first half is direct light; two photons of a
+  // path land; what is scattered from the fourth meeting on has none. Of 128 columns of cells the two beside the edge
+  // are nearer to it than the pictures can tell.
+  for (const int meetings : {3, 4}) {
+    SCOPED_TRACE(meetings);
+    const SceneData scene = makeWedge(180.0F / static_cast<float>(meetings), test::makeHalfMirror());
+    LightRig rig(device(), scene, 128);
+    const Ledger ledger = rig.ledger(0);
+    expectCloses(ledger);
+    const double arrives = ledger.emitted.y - ledger.missed.y;
+    EXPECT_GT(arrives, 0.95 * ledger.emitted.y);
+    EXPECT_NEAR(ledger.blocked.y / arrives, 1.0 / 2.0, 1e-3);
+    EXPECT_NEAR(ledger.deposited.y / arrives, 1.0 / 4.0 + 1.0 / 8.0, 0.01);
+    EXPECT_NEAR(lostTo(ledger, LossReason::kDiffuseShare).y / arrives, meetings == 4 ? 1.0 / 16.0 : 0.0, 2e-3);
+    EXPECT_NEAR(ledger.escaped.y / arrives, std::pow(0.5, meetings), 0.01);
+  }
+}
+
+TEST_F(PhotonLedgerTest, AgreesWithTheReferenceWhereGeneratorsReceive) {
+  SceneData scene = test::makeBallScene(test::makeGlass(1.5F), 128);
+  Material coated = test::makeMetal(vec3(0.9F, 0.6F, 0.3F));
+  coated.metallic = 0.4F;
+  scene.materials[0] = coated;
+  scene.lights.push_back(test::makeSun(vec3(-0.4F, -1, -0.2F), vec3(3)));
+  // The view shows all of the floor.
+  LightRig rig(device(), scene, 512);
+  const Ledger ledger = rig.ledger(3, {.max_events = 12}), reference = referenceLedger(scene);
+  expectCloses(ledger);
+  // Of what the floor sends up into the ball, and of what leaves it, the weaker way is not followed.
+  for (int c = 0; c < 3; ++c) {
+    EXPECT_NEAR(ledger.blocked[c] / reference.blocked[c], 1.0, 0.005);
+    EXPECT_NEAR(ledger.deposited[c] / reference.deposited[c], 1.0, 0.05);
+    const double after = ledger.deposited[c] + ledger.escaped[c] + ledger.lostTotal()[c];
+    EXPECT_NEAR(after / (reference.deposited[c] + reference.escaped[c]), 1.0, 0.005);
+  }
+}
+
+TEST_F(PhotonLedgerTest, RoughPartsOfAMirrorReceive) {
+  // Rough on one half, by a texture, it sends on what falls on the other one alone.
+  SceneData scene;
+  Mesh sheet = makeRectangle("sheet", dvec3(0), dvec3(0, 0, 1), dvec3(1, 0, 0));
+  sheet.texcoords[0].clear();
+  for (const vec3& p : sheet.positions) sheet.texcoords[0].emplace_back(0.5F * (p.x + 1.0F), 0.5F);
+  Material metal = test::makeMetal(vec3(1.0F), 1.0F);
+  scene.images.push_back({"roughness", ByteImage{2, 1, {0, 0, 255, 255, 0, 255, 255, 255}}});
+  metal.metallic_roughness_texture = {.image = 0, .wrap_u = Wrap::kClamp, .nearest = true};
+  test::addObject(scene, std::move(sheet), metal);
+  scene.lights.push_back(test::makeSun(vec3(0.5F, -1, 0), vec3(3)));
+  LightRig rig(device(), scene, 128);
+  const Ledger ledger = rig.ledger(0);
+  expectCloses(ledger);
+  const double arrives = ledger.emitted.y - ledger.missed.y;
+  EXPECT_NEAR(ledger.blocked.y / arrives, 0.5, 0.01);
+  EXPECT_NEAR(ledger.escaped.y / arrives, 0.5, 0.01);
 }
 
 TEST_F(PhotonLedgerTest, LightPassesPanesAsShadowsDo) {
