@@ -5,6 +5,7 @@ find_program(NEPHROID_SPIRV_OPT spirv-opt REQUIRED)
 # Functions inlined and variables turned into values, once for all who make pipelines of a shader: on a CPU device that
 # is most of the work of making one. What a driver does next depends on constants that are known to it alone.
 set(NEPHROID_SPIRV_PASSES
+    --merge-return
     --inline-entry-points-exhaustive
     --eliminate-dead-functions
     --private-to-local
