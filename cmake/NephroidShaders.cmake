@@ -3,9 +3,9 @@ find_program(NEPHROID_GLSLANG_VALIDATOR glslangValidator REQUIRED)
 find_program(NEPHROID_SPIRV_OPT spirv-opt REQUIRED)
 
 # Functions inlined and variables turned into values, once for all who make pipelines of a shader: on a CPU device that
-# is most of the work of making one. What a driver does next depends on constants that are known to it alone.
+# is most of the work of making one. What a driver does next depends on constants that are known to it alone. Functions
+# with several ends are left as they are: merged into one end (--merge-return) they cost drivers more than calls do.
 set(NEPHROID_SPIRV_PASSES
-    --merge-return
     --inline-entry-points-exhaustive
     --eliminate-dead-functions
     --private-to-local
@@ -40,16 +40,11 @@ function(nephroid_embed_shaders target)
       COMMENT "Compiling ${folder}/${shader}"
       VERBATIM)
     add_custom_command(
-      OUTPUT ${module}
-      COMMAND ${NEPHROID_SPIRV_OPT} --target-env=vulkan1.3 --scalar-block-layout ${NEPHROID_SPIRV_PASSES} ${plain} -o
-              ${module}
-      DEPENDS ${plain}
-      VERBATIM)
-    add_custom_command(
       OUTPUT ${header}
-      COMMAND ${CMAKE_COMMAND} -DMODULE=${module} -DHEADER=${header} -DARRAY=${array} -P
+      COMMAND ${CMAKE_COMMAND} -DPLAIN=${plain} -DMODULE=${module} -DHEADER=${header} -DARRAY=${array}
+              -DOPTIMIZER=${NEPHROID_SPIRV_OPT} "-DPASSES=${NEPHROID_SPIRV_PASSES}" -P
               ${PROJECT_SOURCE_DIR}/cmake/WrapShader.cmake
-      DEPENDS ${module} ${PROJECT_SOURCE_DIR}/cmake/WrapShader.cmake
+      DEPENDS ${plain} ${PROJECT_SOURCE_DIR}/cmake/WrapShader.cmake
       VERBATIM)
     list(APPEND headers ${header})
   endforeach()
