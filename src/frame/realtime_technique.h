@@ -54,6 +54,10 @@ class RealtimeTechnique {
   /// @throws ResourceError
   virtual const ReceiverMap* lightReceivers() { return nullptr; }
 
+  /// Flux of the last sample that fell on receivers where none of their views shows them, W: the map of lightReceivers
+  /// lacks it. Waits for the device. @throws ResourceError
+  virtual dvec3 lostByReceivers() { return dvec3(0.0); }
+
   /// SceneData::lights[index] is another now.
   virtual void lightChanged(std::size_t index) = 0;
   /// Instances stand elsewhere now; the buffers know it already.

@@ -84,6 +84,12 @@ void ReceiverMap::add(gpu::CommandRecorder& recorder, const PhotonBuffer& photon
                    settings_.splat_radius, *nearest_, map_);
 }
 
+dvec3 ReceiverMap::readLost(gpu::Device& device) const {
+  if (!surfaces_are_drawn_) return dvec3(0.0);
+  const std::vector<std::int32_t> steps = gpu::readBackAs<std::int32_t>(device, map_.lost());
+  return static_cast<double>(map_.quantum()) * dvec3(steps[0], steps[1], steps[2]);
+}
+
 std::vector<VkDescriptorType> ReceiverMap::descriptorTypes() { return {kTable, kTexture, kTexture}; }
 
 void ReceiverMap::appendBound(std::uint32_t first, const gpu::Sampler& nearest, std::vector<Bound>& bound) const {

@@ -55,6 +55,9 @@ class ReceiverMap {
   std::vector<gpu::Constant> constants() const;
 
   const FluxMap& map() const { return map_; }
+  /// Flux that was added since it was cleared and is in none of the views, W: it fell on a surface that lies behind
+  /// others in all of them. Waits for the device; 0 before it was first cleared. @throws ResourceError
+  dvec3 readLost(gpu::Device& device) const;
 
  private:
   /// Where things are in the views, and how much a step of the flux is, W.

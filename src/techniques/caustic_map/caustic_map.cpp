@@ -157,6 +157,8 @@ const ReceiverMap* CausticMap::lightReceivers() {
   return receiver_map_.get();
 }
 
+dvec3 CausticMap::lostByReceivers() { return receiver_map_ ? receiver_map_->readLost(inputs_.device) : dvec3(0.0); }
+
 bool CausticMap::beginReceivers(gpu::CommandRecorder& recorder, const RealtimeSample& sample,
                                 const std::vector<Point>& points) {
   // Somebody else's pictures have no mirrors of ours.

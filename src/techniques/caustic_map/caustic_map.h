@@ -65,6 +65,7 @@ class CausticMap : public RealtimeTechnique {
 
   void record(gpu::CommandRecorder& recorder, const RealtimeSample& sample) override;
   const ReceiverMap* lightReceivers() override;
+  dvec3 lostByReceivers() override;
   void lightChanged(std::size_t index) override;
   void objectsMoved() override;
 

@@ -110,7 +110,7 @@ Met walkToRay(Ray ray, uvec2 seen, vec3 place, float near) {
   return first.t > near && length(ray.origin + first.t * ray.dir - place) <= near ? first : none;
 }
 
-/// Where a ray leaves a closed body on whose surface it starts, over the surface from the triangles beside the first one:
+/// Where a ray leaves a closed body on whose surface it starts, over the surface from the triangles beside that one:
 /// for ways out that the pictures do not show, next to edges and on sides that they see edge-on.
 Met walkToExit(Ray ray, Start start) {
   Met best = Met(kFarAway, 0.0, 0.0, kNowhere, 0u);

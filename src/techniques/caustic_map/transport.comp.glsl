@@ -420,9 +420,11 @@ void main() {
   uint seed = hashChain(push.seed, index);
   Path path = Path(ray, flux, false, false, 0u, seed, push.wavelength_nm, kNowhere, 0u, kInTheOpen);
   vec3 none = vec3(0.0);
-  PhotonAccount account = PhotonAccount(push.branch == 0u ? flux : none, none, none, none, none, none, none, none, none);
+  PhotonAccount account =
+      PhotonAccount(push.branch == 0u ? flux : none, none, none, none, none, none, none, none, none);
   Flight flight =
-      Flight(path, index, 0u, 0u, kOutcomeDeposited, 0u, false, false, false, 0, 0u, 0.0, ray.origin, none, none, account);
+      Flight(path, index, 0u, 0u, kOutcomeDeposited, 0u, false, false, false, 0, 0u, 0.0, ray.origin, none, none,
+             account);
 
   Pictures generators = Pictures(0u, kGeneratorViews, kGeneratorLayers, push.generator_size);
   Pictures receivers = Pictures(kGeneratorViews, kReceiverViews, kReceiverLayers, push.receiver_size);

@@ -26,6 +26,9 @@ constexpr std::uint64_t kDefaultSamples = 16;
 constexpr int kMaxShadowSize = 2048;
 /// Samples are numbered in 32 bits.
 constexpr std::uint64_t kMaxSamples = std::numeric_limits<std::uint32_t>::max();
+/// Share of the flux on receivers from which on it is worth a word that their map lacks it: a tenth of what is
+/// tolerated of energy.
+constexpr double kNotedLoss = 1e-3;
 /// Between two reports of progress: frames may be much shorter.
 constexpr double kReportInterval_s = 0.1;
 
@@ -96,8 +99,10 @@ class ProgressiveFrames {
       throw InterruptedError("interrupted before there was anything to keep");
     result.image.width = settings_.width, result.image.height = settings_.height;
     for (const std::string& name : settings_.layers) result.image.layers.push_back({name, readLayer(name)});
-    if (settings_.ledgers && technique_.account && frame_.technique())
+    if (settings_.ledgers && technique_.account && frame_.technique()) {
       result.ledgers = technique_.account(*frame_.technique());
+      noteLostByReceivers(result);
+    }
     describe(result);
     return result;
   }
@@ -162,6 +167,17 @@ class ProgressiveFrames {
     for (const ParamSpec& spec : settings_.params.specs())
       metadata["set." + spec.name] = settings_.params.toText(spec.name);
     noteWhatIsMissing(result);
+  }
+
+  void noteLostByReceivers(RenderResult& result) {
+    double ended = 0.0;
+    for (const Ledger& ledger : result.ledgers) ended += luminance(vec3(ledger.deposited));
+    const double lost = frame_.samples() > 0 ? luminance(vec3(frame_.technique()->lostByReceivers())) : 0.0;
+    if (!(lost > kNotedLoss * ended)) return;
+    result.notes.push_back(
+        fmt::format("specular_caustic lacks {:.3g} W, {:.1f} % of what ends on receivers: behind two others from every "
+                    "axis, or beside an edge, no view of them shows it",
+                    lost, 100.0 * lost / ended));
   }
 
   void noteWhatIsMissing(RenderResult& result) const {

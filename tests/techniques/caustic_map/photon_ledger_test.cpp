@@ -60,7 +60,8 @@ TEST_F(PhotonLedgerTest, ClosesForBuiltInScenes) {
 
 TEST_F(PhotonLedgerTest, ClosesForACubeOfViews) {
   SceneData scene = test::makeBallScene(makeColoured(), 96);
-  // So near that it sees the ball at 63° about its middle.
+  // So near that it sees the ball at 63° about its middle: from where it is 56° or less one fitted frustum holds it,
+  // and there are no other views whose borders might lose or count light twice.
   scene.lights.push_back(test::makePoint(vec3(0.65F, 1.85F, 0.65F), vec3(2, 3, 5)));
   LightRig rig(device(), scene);
   ASSERT_GT(rig.viewCount(), 1U);
@@ -97,7 +98,9 @@ TEST_F(PhotonLedgerTest, AgreesWithTheReferenceForABall) {
     SceneData scene = test::makeBallScene(makeColoured(), 128);
     scene.lights.push_back(is_sun ? test::makeSun(vec3(-0.4F, -1, -0.2F), vec3(3))
                                   : test::makePoint(vec3(1, 5, 1), vec3(9)));
-    // Red is left at the rim alone, which takes fine cells.
+    // Red is left at the rim alone, which reflects all of it: 0.2 % more cells that meet the ball than its disc has, as
+    // of the point's in a grid of 128, are 2.8 % of red. In grids of 64, 128, 192, 256 and 384 it was 6.4, 2.8, 0.8,
+    // −0.1 and 0.3 % off, and so is, in proportion, the count of cells.
     LightRig rig(device(), scene, 256);
     const Ledger ledger = rig.ledger(7, {.max_events = 12}), reference = referenceLedger(scene);
     expectCloses(ledger);

@@ -138,6 +138,27 @@ TEST_F(SpecularCausticTest, WallsAndWhatStandsOnFloorsCatchItToo) {
   EXPECT_NEAR(at(0.6F, 0.6F), 0.3F / kPi * 5.0F, 0.01F);
 }
 
+TEST_F(SpecularCausticTest, SaysWhatIsHiddenFromAllAxes) {
+  // Under two plates, light that came through a slab of index 1 and falls by 0.1 a metre: what leaves the slab between
+  // 0.1 and 0.25 m above the floor ends below the plates, which begin a metre from it. That is a rectangle of 0.15 m²
+  // across the floor, which the light passes at 5.7°.
+  SceneData scene;
+  test::addObject(scene, test::makeFloor(4.0), test::makeDiffuse(vec3(0.6F)));
+  test::addObject(scene, makeBox("slab", dvec3(-1.1, 0.05, -0.5), dvec3(-1, 0.25, 0.5)), test::makeGlass(1.0F));
+  scene.lights.push_back(test::makeSun(vec3(1, -0.1F, 0), vec3(5.0F, 4.0F, 3.0F)));
+  const auto lost = [&] {
+    const std::unique_ptr<RealtimeFrame> frame = makeFrame(scene, lookDown(vec3(-1, 0, 0), 1.5F));
+    frame->render(0);
+    return frame->technique()->lostByReceivers();
+  };
+  EXPECT_LT(lost().x, 0.01);
+  for (const double y : {0.3, 0.6})
+    test::addObject(scene, makeRectangle("plate", dvec3(1, y, 0), dvec3(0, 0, 1), dvec3(1, 0, 0)),
+                    test::makeDiffuse(vec3(0.6F)));
+  const dvec3 hidden = lost(), expected = 0.15 / std::sqrt(1.01) * dvec3(5, 4, 3);
+  for (int c = 0; c < 3; ++c) EXPECT_NEAR(hidden[c] / expected[c], 1.0, 0.03);
+}
+
 TEST_F(SpecularCausticTest, AMirrorShowsWhatFallsOnAHalfMirror) {
   // By the wall that mirrors all light onto a floor that mirrors half of it, and scatters the other half.
   SceneData scene;
