@@ -3,6 +3,7 @@
 execute_process(
   COMMAND ${OPTIMIZER} --target-env=vulkan1.3 --scalar-block-layout ${PASSES} ${PLAIN} -o ${MODULE}
   RESULT_VARIABLE result
+  OUTPUT_VARIABLE messages
   ERROR_VARIABLE messages)
 # Else it only tells which functions stay functions.
 if(NOT result EQUAL 0)
