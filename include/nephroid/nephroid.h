@@ -77,8 +77,9 @@ class Scene {
 
 /// What to render. A budget of 0 is "not given"; the first budget that is spent ends the render.
 struct RenderRequest {
-  /// Of `techniqueNames()`, or "auto": caustic-map where there is a Vulkan device and `device` is not "cpu", else
-  /// reference. `Picture::metadata("technique")` tells what it was.
+  /// Of `techniqueNames()`, or "auto": caustic-map where there is a Vulkan device and `device` is not "cpu"; else, and
+  /// for what only it has (a target for the error, layers of errors, a checkpoint), reference.
+  /// `Picture::metadata("technique")` tells what it was.
   std::string technique = "auto";
   int width = 1024, height = 768;             ///< px, 1 to 16384
   std::vector<std::string> layers{"beauty"};  ///< of `layerNames()`

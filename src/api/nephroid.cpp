@@ -52,7 +52,8 @@ class CallbackSink : public ProgressSink {
 
 std::string joinNames(const std::vector<std::string>& names) { return fmt::format("{}", fmt::join(names, ",")); }
 
-RenderSettings makeSettings(const RenderRequest& request, const Technique& technique) {
+/// Everything but the technique's parameters.
+RenderSettings makeSettings(const RenderRequest& request) {
   if (request.width < 1 || request.height < 1 || request.width > kMaxSide || request.height > kMaxSide)
     throw UsageError(
         fmt::format("size {}x{} is out of range; each side is 1 to {} px", request.width, request.height, kMaxSide));
@@ -68,10 +69,7 @@ RenderSettings makeSettings(const RenderRequest& request, const Technique& techn
   settings.seed = request.seed;
   settings.threads = request.threads;
   settings.device = request.device;
-  settings.params = ParamSet(technique.params);
-  for (const auto& [key, value] : request.parameters) settings.params.set(key, value);
   if (!(request.target_error >= 0.0)) throw UsageError("target_error is below 0; 0 is none");
-  checkProgressive(technique, settings);
   return settings;
 }
 
@@ -163,8 +161,11 @@ void Picture::writePng(const std::string& path, std::string_view layer, const Pn
 
 Picture render(Scene& scene, const RenderRequest& request) {
   auto& impl = SceneAccess::get(scene);
-  const Technique& technique = chooseTechnique(request.technique, request.device);
-  const RenderSettings settings = makeSettings(request, technique);
+  RenderSettings settings = makeSettings(request);
+  const Technique& technique = chooseTechnique(request.technique, settings);
+  checkProgressive(technique, settings);
+  settings.params = ParamSet(technique.params);
+  for (const auto& [key, value] : request.parameters) settings.params.set(key, value);
   impl.complete();
   const Camera camera = selectCamera(impl.data, impl.camera_choice);
   StopToken stop;

@@ -12,6 +12,20 @@
 #endif
 
 namespace nephroid {
+#ifdef NEPHROID_VULKAN
+namespace {
+
+/// What only progressive techniques give.
+bool wantsConvergence(const RenderSettings& wanted) {
+  const auto is_estimate = [](const std::string& layer) {
+    return layer.ends_with("_error") || layer.ends_with("_bias");
+  };
+  return wanted.target_error > 0.0 || !wanted.checkpoint.path.empty() ||
+         std::any_of(wanted.layers.begin(), wanted.layers.end(), is_estimate);
+}
+
+}  // namespace
+#endif
 
 std::span<const Technique> techniques() {
   // One line a technique: an explicit list, because static registration is dropped by linkers of static libraries.
@@ -34,14 +48,16 @@ const Technique& findTechnique(std::string_view name) {
   throw UsageError(fmt::format("no technique '{}'; there are: {}", name, fmt::join(names, ", ")));
 }
 
-const Technique& chooseTechnique(std::string_view name, std::string_view device) {
+const Technique& chooseTechnique(std::string_view name, const RenderSettings& wanted) {
   if (name != kAutoTechnique) return findTechnique(name);
 #ifdef NEPHROID_VULKAN
   // Who names a device wants it, and is told if it is not there.
-  const bool on_vulkan = device == "auto" ? gpu::surveyDevices().auto_device.has_value() : device != "cpu";
-  if (on_vulkan) return findTechnique("caustic-map");
+  const auto has_device = [&] {
+    return wanted.device == "auto" ? gpu::surveyDevices().auto_device.has_value() : wanted.device != "cpu";
+  };
+  if (!wantsConvergence(wanted) && has_device()) return findTechnique("caustic-map");
 #else
-  static_cast<void>(device);
+  static_cast<void>(wanted);
 #endif
   return findTechnique("reference");
 }

@@ -71,8 +71,8 @@ struct Technique {
   std::string text;
   std::string source;
   bool on_vulkan = false;  ///< needs a Vulkan device; else computes on the CPU alone
-  bool is_progressive =
-      false;  ///< converges, and knows how far it is: takes RenderSettings::target_error and checkpoint
+  /// Converges, and knows how far it is: takes RenderSettings::target_error and checkpoint.
+  bool is_progressive = false;
   std::vector<ParamSpec> params;
   /// Of a real-time technique: draws the caustic of a frame. Null: it has none.
   /// @return  null if the scene has no caustic that it could draw
@@ -91,12 +91,13 @@ struct Technique {
 std::span<const Technique> techniques();
 /// @throws UsageError with the names there are
 const Technique& findTechnique(std::string_view name);
-/// What is chosen for the user: caustic-map on a Vulkan device, the reference where there is none.
+/// What is chosen for the user: caustic-map on a Vulkan device, the reference where there is none or where what is
+/// wanted is the reference's alone: a target for the error, its estimates, a checkpoint.
 inline constexpr std::string_view kAutoTechnique = "auto";
 /// @param name    of a technique, or kAutoTechnique: then Vulkan is asked for its devices
-/// @param device  RenderSettings::device
+/// @param wanted  its device, layers, target_error and checkpoint count
 /// @throws UsageError as above
-const Technique& chooseTechnique(std::string_view name, std::string_view device);
+const Technique& chooseTechnique(std::string_view name, const RenderSettings& wanted);
 
 /// Whether the technique has a use for RenderSettings::device.
 bool takesDevice(const Technique& technique, std::string_view device);

@@ -75,6 +75,15 @@ TEST(DefaultTechnique, IsCausticMapOnAVulkanDevice) {
   EXPECT_THAT(result.err, HasSubstr("caustic-map"));
 }
 
+TEST(DefaultTechnique, IsTheReferenceForWhatOnlyItHas) {
+  const TempFolder folder;
+  const ProcessResult result =
+      runApart(folder, {"render", "builtin:ring", "--size", "16x12", "--samples", "4", "--photons", "1000", "--aov",
+                        "beauty,beauty_error", "-o", folder.file("x.exr")});
+  ASSERT_EQ(result.exit_code, 0) << result.err;
+  EXPECT_EQ(readExr(folder.file("x.exr")).metadata.at("technique"), "reference");
+}
+
 TEST(DefaultTechnique, IsTheReferenceWithoutVulkan) {
   const TempFolder folder;
   const ProcessResult result = runApart(folder, {"render", "builtin:ring", "--size", "16x12", "--samples", "1",

@@ -124,7 +124,8 @@ Json describeRun(const BenchOptions& options) {
 
 /// The one that was named, or all that have a use for the device; of errors, all that draw a caustic.
 std::vector<const Technique*> chooseTechniques(const BenchOptions& options) {
-  if (!options.only_technique.empty()) return {&chooseTechnique(options.only_technique, options.technique.device)};
+  if (!options.only_technique.empty())
+    return {&chooseTechnique(options.only_technique, {.device = options.technique.device})};
   std::vector<const Technique*> chosen;
   for (const Technique& technique : techniques())
     if (takesDevice(technique, options.technique.device) && (!options.error || technique.make_realtime != nullptr))

@@ -37,7 +37,7 @@ RenderSettings makeReferenceSettings(const ErrorOptions& options, std::uint64_t 
   reference.size = options.technique.size;
   reference.threads = options.technique.threads;
   reference.photons = options.reference_photons / 2;
-  reference.parameters = {"estimator=light"};  // the one without bias
+  reference.parameters = {"estimator=light"};          // the one without bias
   reference.seed = options.technique.seed + 1 + half;  // neither those of the other half nor of what is compared
   return makeSettings(reference);
 }

@@ -140,6 +140,7 @@ RaceCurve raceEstimator(const std::string& scene, const std::string& estimator, 
 
 RaceResult runRace(const std::string& scene, const RaceOptions& given) {
   RaceOptions options = given;
+  options.technique.name = "reference";
   const std::vector<std::string> estimators = chooseEstimators(options.technique);
   const ScratchFolder folder;
   const std::string reference =

@@ -163,10 +163,15 @@ double estimateMemory(const RenderSettings& settings) {
 
 ExitCode runRender(RenderOptions options) {
   if (options.output.empty()) throw UsageError("render: no output given; add -o picture.png or -o picture.exr");
-  options.technique.name = chooseTechnique(options.technique.name, options.technique.device).name;
+  const std::vector<std::string> layers = parseLayerList(options.aov);
+  const RenderSettings wanted{.layers = layers,
+                              .target_error = options.target_error,
+                              .checkpoint = options.checkpoint,
+                              .device = options.technique.device};
+  options.technique.name = chooseTechnique(options.technique.name, wanted).name;
   RenderSettings settings = makeSettings(options.technique);
   settings.ledgers = options.verbose || options.json;
-  settings.layers = parseLayerList(options.aov);
+  settings.layers = layers;
   settings.target_error = options.target_error;
   settings.checkpoint = options.checkpoint;
   checkProgressive(findTechnique(options.technique.name), settings);

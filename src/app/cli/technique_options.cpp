@@ -29,7 +29,8 @@ void addTechniqueOptions(CLI::App& app, TechniqueOptions& options, std::string& 
   beginGroup(app, "Technique");
   addValue(app, "--technique", name, "NAME",
            {"How to draw; 'nephroid techniques' describes each. auto is caustic-map where there is a Vulkan device and "
-            "--device is not cpu, else reference.",
+            "--device is not cpu; else, and for what only it has (--target-error, --checkpoint, layers of errors), "
+            "reference.",
             defaults.name, joinTechniqueNames(), ""});
   addList(app, "--set", options.parameters, "KEY=VALUE",
           {"A parameter of the technique; 'nephroid techniques' lists them.", "none", "", ""});
@@ -66,7 +67,7 @@ RenderSettings makeSettings(const TechniqueOptions& options) {
   settings.seed = options.seed;
   settings.threads = options.threads;
   settings.device = options.device;
-  const Technique& technique = chooseTechnique(options.name, options.device);
+  const Technique& technique = chooseTechnique(options.name, {.device = options.device});
   checkDevice(technique, options.device);
   settings.params = ParamSet(technique.params);
   for (const std::string& parameter : options.parameters) {

@@ -23,13 +23,14 @@ ParamSpec makeEstimatorParam() {
       "",
       "what makes caustics. light: photons, each for the pixel that sees it; footprint: spread over what neighbours "
       "would cover, less and less; photon-map: gathered under kernels that shrink; path: paths from the eye alone, "
-      "for checking (needs lights with a size); auto: footprint",
+      "for checking (needs lights with a size); auto: footprint, or light where errors are to be estimated",
       choices};
 }
 
-Estimator chooseEstimator(std::string_view name) {
+Estimator chooseEstimator(std::string_view name, bool estimates_errors) {
   const auto found = std::find(kNames.begin(), kNames.end(), name);
-  return found == kNames.end() ? Estimator::kFootprint : static_cast<Estimator>(found - kNames.begin());
+  if (found != kNames.end()) return static_cast<Estimator>(found - kNames.begin());
+  return estimates_errors ? Estimator::kLight : Estimator::kFootprint;
 }
 
 std::string_view nameOf(Estimator estimator) { return kNames[static_cast<std::size_t>(estimator)]; }

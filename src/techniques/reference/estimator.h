@@ -4,7 +4,7 @@
 //   footprint   photons, each spread over its footprint (see footprint.h): the least error until photons are many
 //   photon-map  photons gathered by paths from the eye under a kernel that shrinks (progressive photon mapping)
 //   path        paths from the eye alone: shares nothing with the others; needs lights with a size
-//   auto        footprint
+//   auto        footprint; light where errors are to be estimated, for a footprint's blur is in no standard error
 //
 // Caustics in mirrors and through glass can be met by paths from the eye alone, so they are gathered by all but `path`.
 #pragma once
@@ -25,8 +25,10 @@ namespace nephroid {
 enum class Estimator : std::uint8_t { kLight, kFootprint, kPhotonMap, kPath };
 
 ParamSpec makeEstimatorParam();
-/// The one that a value of the parameter stands for. @param name  as checked by the parameter
-Estimator chooseEstimator(std::string_view name);
+/// The one that a value of the parameter stands for.
+/// @param name              as checked by the parameter
+/// @param estimates_errors  whether standard errors are wanted
+Estimator chooseEstimator(std::string_view name, bool estimates_errors);
 std::string_view nameOf(Estimator estimator);
 /// Every value of the parameter but `auto`.
 std::vector<std::string> estimatorNames();

@@ -65,6 +65,10 @@ std::vector<std::string> layersWithError(const RenderSettings& settings) {
   return layers;
 }
 
+Estimator estimatorOf(const RenderSettings& settings) {
+  return chooseEstimator(settings.params.getString("estimator"), !layersWithError(settings).empty());
+}
+
 /// One progressive render.
 class ReferenceRender {
  public:
@@ -75,7 +79,7 @@ class ReferenceRender {
         progress_(progress),
         stop_(stop),
         camera_(camera),
-        estimator_(chooseEstimator(settings.params.getString("estimator"))),
+        estimator_(estimatorOf(settings)),
         needs_(settings.layers),
         world_(scene, camera, settings.width, settings.height, makeOptions(settings)),
         film_(settings.width, settings.height, needs_),
@@ -128,7 +132,7 @@ class ReferenceRender {
     ReferenceOptions options;
     options.specular_alpha = settings.params.getFloat("specular-alpha");
     options.max_bounces = settings.params.getInt("max-bounces");
-    options.light_tracing = chooseEstimator(settings.params.getString("estimator")) != Estimator::kPath;
+    options.light_tracing = estimatorOf(settings) != Estimator::kPath;
     if (const int bands = settings.params.getInt("bands"); bands > 0) options.spectral.bands = makeBands(bands);
     options.seed = foldSeed(settings.seed);
     return options;
