@@ -1,5 +1,5 @@
-# Runs the passes over a SPIR-V module and writes its words as an array, a constant of its own for every file that includes
-# it.
+# Runs the passes over a SPIR-V module and writes its words as an array, a constant of its own for every file that
+# includes it.
 execute_process(
   COMMAND ${OPTIMIZER} --target-env=vulkan1.3 --scalar-block-layout ${PASSES} ${PLAIN} -o ${MODULE}
   RESULT_VARIABLE result

@@ -139,14 +139,16 @@ std::vector<gpu::Constant> RealtimeFrame::lightConstants() const {
   return join({{5, has_environment}, {6, lamps_compiled_}, {7, emits}}, lights_compiled_.constants());
 }
 
+ShadingInputs RealtimeFrame::shadingInputs() const {
+  return {camera_view_, seen_, tint_, lamps_, environment_, environment_sampler_, *light_grids_};
+}
+
 void RealtimeFrame::makeSpecular() {
   specular_.reset();
   if (!settings_.box_tree_builder || !buffers_->traits().specular.present) return;
   recorder_.begin();
   if (!tree_) tree_ = std::make_unique<TriangleTree>(device_, recorder_, scene_, settings_.box_tree_builder);
-  const SpecularPass::Inputs inputs{camera_view_,  seen_,        tint_,
-                                    lamps_,        environment_, environment_sampler_,
-                                    *light_grids_, *tree_,       technique_ ? technique_->lightReceivers() : nullptr};
+  const SpecularPass::Inputs inputs{shadingInputs(), *tree_, technique_ ? technique_->lightReceivers() : nullptr};
   specular_ = std::make_unique<SpecularPass>(
       device_, recorder_, *buffers_, inputs, lightConstants(),
       SpecularPass::Following{.max_events = settings_.max_events, .spacing = specularSpacing()});
@@ -170,8 +172,7 @@ void RealtimeFrame::makePasses() {
   lamps_compiled_ = lamp_count_ > 0;
   lights_compiled_ = light_grids_->traits();
   if (!passes_) passes_ = std::make_unique<Passes>(device_, buffers_->traits());
-  const ShadePass::Inputs inputs{camera_view_, seen_, tint_, lamps_, environment_, environment_sampler_, *light_grids_};
-  shade_ = std::make_unique<ShadePass>(device_, *buffers_, inputs, lightConstants(), settings_.shading);
+  shade_ = std::make_unique<ShadePass>(device_, *buffers_, shadingInputs(), lightConstants(), settings_.shading);
 }
 
 bool RealtimeFrame::lightsAreCompiled() const {

@@ -95,6 +95,7 @@ class RealtimeFrame {
   void uploadLamps();
   void makeTargets();
   void makePasses();
+  ShadingInputs shadingInputs() const;
   void makeSpecular();
   /// FrameSettings::specular_spacing, or 1 where the scene forbids cells.
   std::uint32_t specularSpacing() const;
@@ -124,8 +125,8 @@ class RealtimeFrame {
   std::unique_ptr<SceneBuffers> buffers_;
   std::unique_ptr<LightGrids> light_grids_;
   std::unique_ptr<Passes> passes_;
-  std::unique_ptr<ComputeRaster> raster_;         ///< where it is used
-  std::unique_ptr<TriangleTree> tree_;            ///< null: nothing is specular
+  std::unique_ptr<ComputeRaster> raster_;  ///< where it is used
+  std::unique_ptr<TriangleTree> tree_;     ///< null: nothing is specular
   std::unique_ptr<ShadePass> shade_;
   std::unique_ptr<RealtimeTechnique> technique_;  ///< null: none, or it has nothing to draw
   std::unique_ptr<SpecularPass> specular_;        ///< null: nothing is specular

@@ -36,7 +36,7 @@ bool wantsBlocks(Shading shading, const gpu::Device& device, const SceneTraits& 
 
 }  // namespace
 
-ShadePass::ShadePass(gpu::Device& device, const SceneBuffers& buffers, const Inputs& inputs,
+ShadePass::ShadePass(gpu::Device& device, const SceneBuffers& buffers, const ShadingInputs& inputs,
                      const std::vector<gpu::Constant>& lights, Shading shading)
     : buffers_(buffers),
       inputs_(inputs),

@@ -4,9 +4,9 @@
 
 #include <vector>
 
-#include "frame/light_grids.h"
 #include "frame/sample_push.shared.h"
 #include "frame/scene_buffers.h"
+#include "frame/shading_inputs.h"
 #include "gpu/commands.h"
 
 namespace nephroid {
@@ -21,17 +21,9 @@ enum class Shading {
 /// Not thread-safe. What it is made from must outlive it.
 class ShadePass {
  public:
-  /// Of the frame, which makes them before.
-  struct Inputs {
-    const gpu::Buffer& camera_view;
-    const gpu::Image &seen, &tint, &lamps, &environment;
-    const gpu::Sampler& environment_sampler;
-    const LightGrids& grids;
-  };
-
   /// @param lights  constants of frame/sky.glsl and frame/lights.glsl: what shines
   /// @throws ResourceError
-  ShadePass(gpu::Device& device, const SceneBuffers& buffers, const Inputs& inputs,
+  ShadePass(gpu::Device& device, const SceneBuffers& buffers, const ShadingInputs& inputs,
             const std::vector<gpu::Constant>& lights, Shading shading);
 
   /// The frame's images have another size now. @throws ResourceError
@@ -47,7 +39,7 @@ class ShadePass {
   std::vector<gpu::Bound> bound() const;
 
   const SceneBuffers& buffers_;
-  Inputs inputs_;
+  ShadingInputs inputs_;
   gpu::ComputePipeline pixels_;                    ///< of all, or of those of mixed blocks
   gpu::ComputePipeline blocks_, shadowed_blocks_;  ///< where there are blocks
   gpu::Image direct_, emission_;

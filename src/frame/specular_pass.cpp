@@ -125,31 +125,23 @@ uvec2 SpecularPass::pointCount() const {
 
 void SpecularPass::fitPicture(gpu::Device& device) {
   const gpu::ImageDesc& seen = inputs_.seen.desc();
-  const auto make_sum = [&](uvec2 size, const char* name) {
+  const auto make = [&](VkFormat format, uvec2 size, const char* name, VkImageUsageFlags more_usage = 0) {
     return gpu::Image(device,
-                      {.format = kFloat4,
+                      {.format = format,
                        .width = size.x,
                        .height = size.y,
-                       .usage = VK_IMAGE_USAGE_STORAGE_BIT | VK_IMAGE_USAGE_SAMPLED_BIT},
+                       .usage = VK_IMAGE_USAGE_STORAGE_BIT | VK_IMAGE_USAGE_SAMPLED_BIT | more_usage},
                       name);
   };
-  sum_ = make_sum({seen.width, seen.height}, "specular");
+  sum_ = make(kFloat4, {seen.width, seen.height}, "specular");
   // Something has to be bound, here and below.
-  caustic_sum_ = make_sum(inputs_.receivers ? uvec2(seen.width, seen.height) : uvec2(1), "caustics in specular");
+  caustic_sum_ = make(kFloat4, inputs_.receivers ? uvec2(seen.width, seen.height) : uvec2(1), "caustics in specular");
   const uvec2 points = pointCount();
   const uvec2 kept = hasCells() ? points : uvec2(1);
-  ends_ = gpu::Image(device,
-                     {.format = VK_FORMAT_R32G32B32A32_UINT,
-                      .width = kept.x * kEndTexels * kChainCount,
-                      .height = kept.y,
-                      .usage = VK_IMAGE_USAGE_STORAGE_BIT | VK_IMAGE_USAGE_SAMPLED_BIT},
-                     "specular ends");
-  bends_ = gpu::Image(device,
-                      {.format = kFloat4,
-                       .width = kept.x * kBendTexels * kChainCount,
-                       .height = kept.y,
-                       .usage = VK_IMAGE_USAGE_STORAGE_BIT | VK_IMAGE_USAGE_SAMPLED_BIT},
-                      "how specular ends bend");
+  ends_ = make(VK_FORMAT_R32G32B32A32_UINT, kept * uvec2(kEndTexels * kChainCount, 1), "specular ends",
+               VK_IMAGE_USAGE_TRANSFER_DST_BIT);
+  bends_ = make(kFloat4, kept * uvec2(kBendTexels * kChainCount, 1), "how specular ends bend");
+  stamp_ = 0;
   const VkDeviceSize words = VkDeviceSize{seen.width} * seen.height * kPixelListCount +
                              VkDeviceSize{points.x} * points.y * (kListCount - kPixelListCount);
   lists_ = gpu::Buffer(device, sizeof(kNoLists) + words * sizeof(std::uint32_t),
@@ -282,6 +274,10 @@ void SpecularPass::recordFollowing(gpu::CommandRecorder& recorder, const gpu::Co
 }
 
 void SpecularPass::record(gpu::CommandRecorder& recorder, const SamplePush& sample) {
+  // The memory may be that of an earlier pass, whose ends bear the stamps to come.
+  if (stamp_ == 0)
+    recorder.pass("clear ends", {Use(ends_, Access::kTransferWrite)},
+                  [&](PassCommands& commands) { commands.clear(ends_, VkClearColorValue{}); });
   ++stamp_;
   const Push push = pushOf(sample);
   recorder.pass("clear lists", {Use(no_lists_, Access::kTransferRead), Use(lists_, Access::kTransferWrite)},

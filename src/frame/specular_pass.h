@@ -10,10 +10,10 @@
 #include <vector>
 
 #include "core/math.h"
-#include "frame/light_grids.h"
 #include "frame/receiver_map.h"
 #include "frame/sample_push.shared.h"
 #include "frame/scene_buffers.h"
+#include "frame/shading_inputs.h"
 #include "frame/triangle_tree.h"
 #include "gpu/commands.h"
 
@@ -22,12 +22,7 @@ namespace nephroid {
 /// Not thread-safe. What it is made from must outlive it.
 class SpecularPass {
  public:
-  /// Of the frame, which makes them before.
-  struct Inputs {
-    const gpu::Buffer& camera_view;
-    const gpu::Image &seen, &tint, &lamps, &environment;
-    const gpu::Sampler& environment_sampler;
-    const LightGrids& grids;
+  struct Inputs : ShadingInputs {
     const TriangleTree& tree;
     const ReceiverMap* receivers;  ///< caustics on what is seen; null: there are none
   };
@@ -73,7 +68,7 @@ class SpecularPass {
   gpu::ComputePipeline cells_, mixed_, follow_most_, agreement_, lit_;  ///< where there are cells
   ReceiverMap no_receivers_;                                            ///< bound where there are none
   gpu::Image bands_, sum_, caustic_sum_, ends_, bends_;
-  std::uint32_t stamp_ = 0;       ///< of the latest sample
+  std::uint32_t stamp_ = 0;       ///< of the latest sample; 0: nothing is noted in `ends_` yet
   gpu::Buffer no_lists_, lists_;  ///< the heads of empty lists; heads and lists
 };
 

@@ -50,6 +50,8 @@ std::string_view erringLayer(std::string_view name) {
   return name.ends_with(kSuffix) ? name.substr(0, name.size() - kSuffix.size()) : std::string_view();
 }
 
+bool isEstimate(std::string_view name) { return !erringLayer(name).empty() || name.ends_with("_bias"); }
+
 const LayerInfo& findLayerInfo(std::string_view name) {
   std::vector<std::string> names;
   for (const LayerInfo& info : kLayers) {

@@ -25,6 +25,9 @@ const LayerInfo& findLayerInfo(std::string_view name);
 /// "caustic" for "caustic_error": whose standard error a layer shows; "" for all other layers.
 std::string_view erringLayer(std::string_view name);
 
+/// Whether a layer is about the error of others: a standard error or a bias.
+bool isEstimate(std::string_view name);
+
 /// "beauty,caustic" → names, checked, in file order, without repetition.
 /// @throws UsageError
 std::vector<std::string> parseLayerList(std::string_view comma_separated);

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "nephroid/error.h"
+#include "techniques/layers.h"
 #include "techniques/reference/reference.h"
 #include "techniques/technique.h"
 #ifdef NEPHROID_VULKAN
@@ -17,11 +18,8 @@ namespace {
 
 /// What only progressive techniques give.
 bool wantsConvergence(const RenderSettings& wanted) {
-  const auto is_estimate = [](const std::string& layer) {
-    return layer.ends_with("_error") || layer.ends_with("_bias");
-  };
   return wanted.target_error > 0.0 || !wanted.checkpoint.path.empty() ||
-         std::any_of(wanted.layers.begin(), wanted.layers.end(), is_estimate);
+         std::any_of(wanted.layers.begin(), wanted.layers.end(), isEstimate);
 }
 
 }  // namespace

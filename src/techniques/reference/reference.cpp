@@ -52,15 +52,14 @@ double secondsSince(Clock::time_point start) { return std::chrono::duration<doub
 
 /// Layers whose error has to be estimated: because it is a layer too, or because it ends the render.
 std::vector<std::string> layersWithError(const RenderSettings& settings) {
+  const auto asked = [&](std::string_view name) {
+    return std::find(settings.layers.begin(), settings.layers.end(), name) != settings.layers.end();
+  };
   std::vector<std::string> layers;
   for (const LayerInfo& info : layerInfos()) {
-    const auto asked = [&](std::string_view name) {
-      return std::find(settings.layers.begin(), settings.layers.end(), name) != settings.layers.end();
-    };
-    const std::string error = std::string(info.name) + "_error";
-    const auto has_error = [&](const LayerInfo& other) { return other.name == error; };
-    if (std::none_of(layerInfos().begin(), layerInfos().end(), has_error)) continue;
-    if (asked(error) || (settings.target_error > 0.0 && asked(info.name))) layers.emplace_back(info.name);
+    const std::string_view erring = erringLayer(info.name);
+    const bool wanted = asked(info.name) || (settings.target_error > 0.0 && asked(erring));
+    if (!erring.empty() && wanted) layers.emplace_back(erring);
   }
   return layers;
 }
@@ -533,9 +532,9 @@ Technique makeReferenceTechnique() {
   Technique technique;
   technique.name = "reference";
   technique.text =
-      "path tracing and light tracing on the CPU, progressive: unbiased but for caustics in mirrors and through glass, "
-      "whose kernels shrink; the truth for all others";
-  technique.source = "Kajiya 1986; Arvo 1986; Veach 1997; Knaus & Zwicker 2011";
+      "path tracing and light tracing on the CPU, progressive: unbiased but for caustics, whose footprints and, in "
+      "mirrors and through glass, kernels shrink; the truth for all others";
+  technique.source = "Kajiya 1986; Arvo 1986; Veach 1997; Igehy 1999; Knaus & Zwicker 2011";
   technique.is_progressive = true;
   technique.params = {
       makeSpecularAlphaParam(),
