@@ -67,7 +67,7 @@ RenderSettings makeSettings(const TechniqueOptions& options) {
   settings.seed = options.seed;
   settings.threads = options.threads;
   settings.device = options.device;
-  const Technique& technique = chooseTechnique(options.name, {.device = options.device});
+  const Technique& technique = chooseTechnique(options.name, settings);
   checkDevice(technique, options.device);
   settings.params = ParamSet(technique.params);
   for (const std::string& parameter : options.parameters) {
