@@ -13,8 +13,10 @@ layout(set = 0, binding = NEPHROID_TREE_BINDINGS + 1) uniform usampler2D tree_tr
 
 layout(constant_id = 20) const bool kTreeIsCompact = false;
 
-/// Weights of corners below zero by as much are on the triangle: else a ray may slip between two of them.
+/// Weights of corners may be below zero by what rounding makes of them, or a ray slips between two triangles: by so
+/// much of the triangle, and of how far off it is in lengths of its edges.
 const float kEdgeSlack = 1e-6;
+const float kReachSlack = 5e-7;
 
 /// A box of the tree, on its grid: in the world where that is none.
 struct TreeBox {
@@ -39,6 +41,14 @@ bool meetsBox(vec3 lower, vec3 upper, vec3 origin, vec3 inverse_dir, float t_max
   vec3 near = min(a, b), far = max(a, b);
   float enters = max(max(near.x, near.y), max(near.z, 0.0));
   return enters <= min(min(far.x, far.y), min(far.z, t_max)) * (1.0 + 1e-6);
+}
+
+float largestOf(vec3 v) { return max(abs(v.x), max(abs(v.y), abs(v.z))); }
+
+/// No less than a third of the distance to a triangle times its longest edge, about: of the size of the products that
+/// weights of corners are differences of.
+float reachOf(Triangle t, vec3 from) {
+  return largestOf(from - t.a) * max(largestOf(t.b - t.a), largestOf(t.c - t.a));
 }
 
 /// The first triangle that a ray meets but its own.
@@ -73,9 +83,10 @@ Met meetFirst(Ray ray, uint own_instance, uint own_triangle) {
       uvec4 b = texelFetch(tree_triangle_table, texelOf(3u * triangle + 1u), 0);
       uvec4 c = texelFetch(tree_triangle_table, texelOf(3u * triangle + 2u), 0);
       ++triangle;
-      RayTriangle hit = intersectPlaneOf(
-          Triangle(uintBitsToFloat(a.xyz), uintBitsToFloat(b.xyz), uintBitsToFloat(c.xyz)), ray.origin, ray.dir);
-      bool inside = hit.size > 0.0 && min(min(hit.u, hit.v), hit.size - hit.u - hit.v) >= -kEdgeSlack * hit.size;
+      Triangle corners = Triangle(uintBitsToFloat(a.xyz), uintBitsToFloat(b.xyz), uintBitsToFloat(c.xyz));
+      RayTriangle hit = intersectPlaneOf(corners, ray.origin, ray.dir);
+      float slack = kEdgeSlack * hit.size + kReachSlack * reachOf(corners, ray.origin);
+      bool inside = hit.size > 0.0 && min(min(hit.u, hit.v), hit.size - hit.u - hit.v) >= -slack;
       bool own = a.w == own_instance && b.w == own_triangle;
       if (is_triangle && !own && inside && hit.t > 0.0 && hit.t < best.t * hit.size)
         best = Met(hit.t / hit.size, hit.u / hit.size, hit.v / hit.size, a.w, b.w);
