@@ -20,10 +20,15 @@ layout(set = 0, binding = 2) uniform sampler2DArray surfaces;
 layout(set = 0, binding = 3, r32i) uniform iimage2DArray flux_image;
 layout(set = 0, binding = 4, r32ui) writeonly uniform uimage2DArray tile_image;
 layout(scalar, set = 0, binding = 5) buffer Lost { int lost_steps[]; };
-layout(scalar, set = 0, binding = 6) buffer Rest {
-  uint rest_count;
-  uint rest[];  // cells that the pass over all of them leaves to the next, by number
+layout(scalar, set = 0, binding = 6) buffer Lists {
+  uint whole_count;
+  uint torn_count;
+  uint large_count;
+  /// By number, from the first place on: cells between photons that took the same way, or squares of them (kIsSquare).
+  /// From place cellCount() backwards: those that are torn. From there on: pieces that are left to the last pass.
+  uint listed[];
 };
+layout(scalar, set = 0, binding = 7) readonly buffer Squares { uint squares[]; };  // PhotonBuffer::squares
 
 layout(constant_id = 0) const bool kMakesQuads = true;
 layout(constant_id = 1) const bool kKeepsDirections = false;
@@ -267,6 +272,27 @@ Coverage coverageOf(CellOnPicture cell) {
   return k;
 }
 
+/// Where a row of texels meets an edge: least and most x.
+vec2 spanInRow(vec2 span, Edge e, float y) {
+  float lower = max(min(e.a.y, e.b.y), y), upper = min(max(e.a.y, e.b.y), y + 1.0);
+  if (lower > upper) return span;
+  float x_0 = e.a.x + (lower - e.a.y) * e.slope, x_1 = e.a.x + (upper - e.a.y) * e.slope;
+  if (e.a.y == e.b.y) {
+    x_0 = e.a.x;
+    x_1 = e.b.x;
+  }
+  return vec2(min(span.x, min(x_0, x_1)), max(span.y, max(x_0, x_1)));
+}
+
+/// Texels of a row in which some of the cell may lie: the first one, and where they end.
+vec2 rowOf(Coverage k, float y) {
+  vec2 span = spanInRow(spanInRow(vec2(1e30, -1e30), k.ab, y), k.bc, y);
+  span = spanInRow(spanInRow(span, k.cd, y), k.da, y);
+  if (k.point_share_1 > 0.0 && k.point_1.y == y) span = vec2(min(span.x, k.point_1.x), max(span.y, k.point_1.x));
+  if (k.point_share_2 > 0.0 && k.point_2.y == y) span = vec2(min(span.x, k.point_2.x), max(span.y, k.point_2.x));
+  return vec2(max(k.first.x, floor(span.x)), min(k.end.x, span.y + 1.0));
+}
+
 float countTexels(Coverage k) {
   vec2 size = ceil(k.end - k.first);
   return size.x * size.y;
@@ -299,6 +325,19 @@ void addShare(Coverage k, vec2 at, uint view, Span span, Light light, uint salt)
   addToTexel(texel, view * kFluxLayers + (is_lit ? layer : 0u), light, share, salt, is_lit);
 }
 
+/// All of a small cell, in one loop, so that threads that go in step do not wait for each other's rows.
+void addRows(Coverage k, uint view, Span span, Light light, uint salt) {
+  float y = k.first.y;
+  vec2 row = rowOf(k, y);
+  while (y < k.end.y) {
+    if (row.x < row.y) addShare(k, vec2(row.x, y), view, span, light, salt);
+    row.x += 1.0;
+    if (row.x < row.y) continue;
+    y += 1.0;
+    row = rowOf(k, y);
+  }
+}
+
 bool isPhoton(ivec2 at) {
   return min(at.x, at.y) >= 0 && at.x < int(push.grid_width) && at.y < int(push.grid_height);
 }
@@ -314,14 +353,15 @@ struct Cell {
 };
 
 /// @param first  of its corners; from (-1, -1) on
-Cell fetchCell(ivec2 first) {
+/// @param size   photons from one corner to the next: more than one of a square of cells
+Cell fetchCell(ivec2 first, int size) {
   Cell cell;
   cell.valid = 0u;
   cell.is_whole = true;
   uint chain = 0u;
   vec3 sum = vec3(0.0);
   for (uint k = 0u; k < 4u; ++k) {
-    ivec2 at = first + kCorners[k];
+    ivec2 at = first + size * kCorners[k];
     bool is_photon = isPhoton(at);
     Photon photon = fetchPhoton(is_photon ? indexOf(at) : 0u);
     bool is_valid = is_photon && (photon.light_band_flags & kPhotonValid) != 0u;
@@ -347,5 +387,22 @@ Light lightOf(Cell cell) {
 
 /// Cells along a side of the grid: one more than photons.
 uint cellsAcross() { return push.grid_width + 1u; }
+uint cellCount() { return cellsAcross() * (push.grid_height + 1u); }
+uint numberOf(ivec2 first) { return uint(first.y + 1) * cellsAcross() + uint(first.x + 1); }
+ivec2 firstOf(uint number) { return ivec2(number % cellsAcross(), number / cellsAcross()) - 1; }
+
+/// Of what is listed: not a cell but the square that begins with it.
+const uint kIsSquare = 0x80000000u;
+/// Of a piece: where it says which part of the cell it is, all of it or the quarter of one corner.
+const uint kPartShift = 28u;
+const uint kWholePart = 4u;
+
+/// Leaves a piece to the last pass. @return  false: there is no room
+bool leave(uint number, uint part) {
+  uint place = atomicAdd(large_count, 1u);
+  if (place >= cellCount()) return false;
+  listed[cellCount() + place] = number | part << kPartShift;
+  return true;
+}
 
 #endif

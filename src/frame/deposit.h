@@ -49,8 +49,8 @@ class Deposit {
 
  private:
   gpu::Device& device_;
-  gpu::ComputePipeline cells_, rest_pass_;
-  gpu::Buffer rest_;  ///< cells that the first pass leaves to the second
+  gpu::ComputePipeline sort_, cells_, edges_, large_;
+  gpu::Buffer lists_;  ///< cells that each pass leaves to the next
 };
 
 }  // namespace nephroid

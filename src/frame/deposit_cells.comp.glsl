@@ -1,22 +1,35 @@
-// Cells between four photons that took the same way. Large ones, and those at the edges of what glass and mirrors do, are
-// listed for deposit_rest.comp.glsl, so that threads that go in step do not all wait for a few.
+// Cells between four photons that took the same way, and squares of them that do for one. Large ones are left to
+// deposit_large.comp.glsl, so that threads that go in step do not all wait for a few.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_scalar_block_layout : require
 #extension GL_EXT_control_flow_attributes : require
 #include "frame/deposit.glsl"
 
-layout(local_size_x = 8, local_size_y = 8) in;
+layout(local_size_x = 64) in;
 
-void main() {
-  ivec2 first = ivec2(gl_GlobalInvocationID.xy) - 1;
-  if (first.x >= int(push.grid_width) || first.y >= int(push.grid_height)) return;
-  Cell cell = fetchCell(first);
-  uint number = gl_GlobalInvocationID.y * cellsAcross() + gl_GlobalInvocationID.x;
-  bool is_whole = kMakesQuads && cell.is_whole;
+/// The flux of all cells of a square, by photons at its corners, sides and middle: along each side what the trapezoidal
+/// rule over four cells says of a cubic polynomial.
+vec3 fluxOfSquare(ivec2 first) {
+  int half_side = int(kDepositSquare) / 2;
+  vec3 sum = vec3(0.0);
+  for (int i = 0; i < 9; ++i) {
+    ivec2 step = ivec2(i % 3, i / 3);
+    float weight = (step.x == 1 ? 10.0 : 3.0) * (step.y == 1 ? 10.0 : 3.0);
+    sum += weight * uintBitsToFloat(texelFetch(photon_texels, int(4u * indexOf(first + half_side * step) + 2u)).xyz);
+  }
+  return sum * float(kDepositSquare * kDepositSquare) / 256.0;
+}
+
+void depositItem(uint item) {
+  bool is_square = (item & kIsSquare) != 0u;
+  uint number = item & ~kIsSquare;
+  ivec2 first = firstOf(number);
+  Cell cell = fetchCell(first, is_square ? int(kDepositSquare) : 1);
   Light light = lightOf(cell);
-  uint faced = kViewsShare && is_whole ? viewFaced(cell.places, light.direction) : kViewCount;
-  if (kViewsShare && is_whole && faced == kViewCount) addToLost(light, number);
+  if (is_square) light.flux = fluxOfSquare(first);
+  uint faced = kViewsShare ? viewFaced(cell.places, light.direction) : kViewCount;
+  if (kViewsShare && faced == kViewCount) addToLost(light, number);
   // Nearly always one picture shows all of it.
   uint view = kViewCount;
   bool crosses = false;
@@ -32,18 +45,16 @@ void main() {
     view = v;
     shown = here;
   }
-  bool is_seen = is_whole && view != kViewCount;
+  if (view == kViewCount) return;
   Coverage coverage = coverageOf(shown);
-  bool is_small = is_seen && !crosses && countTexels(coverage) <= kLargeBox;
-  if (cell.valid != 0u && !is_small && (is_seen || !is_whole))
-    rest[atomicAdd(rest_count, 1u)] = number;
-  if (!is_small) return;
+  // A square never lies on several pictures, or only with a texel or two.
+  if (!is_square && (crosses || countTexels(coverage) > kLargeBox) && leave(number, kWholePart)) return;
   Span span = spanOf(shown, cell.places, view);
   // One loop, so that threads that go in step do not wait for each other's rows.
-  vec2 at = coverage.first;
-  while (at.y < coverage.end.y) {
-    addShare(coverage, at, view, span, light, number);
-    at.x += 1.0;
-    if (at.x >= coverage.end.x) at = vec2(coverage.first.x, at.y + 1.0);
-  }
+  addRows(coverage, view, span, light, number);
+}
+
+void main() {
+  uint threads = gl_NumWorkGroups.x * gl_WorkGroupSize.x;
+  for (uint i = gl_GlobalInvocationID.x; i < whole_count; i += threads) depositItem(listed[i]);
 }

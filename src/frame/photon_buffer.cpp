@@ -26,6 +26,12 @@ PhotonBuffer::PhotonBuffer(gpu::Device& device, std::uint32_t capacity, std::uin
   }
 }
 
+void PhotonBuffer::makeSquares(gpu::Device& device) {
+  const std::uint32_t count = acrossSquares(batch.grid_width) * acrossSquares(batch.grid_height);
+  squares = gpu::Buffer(device, VkDeviceSize{count} * sizeof(std::uint32_t), VK_BUFFER_USAGE_STORAGE_BUFFER_BIT,
+                        gpu::MemoryIntent::kDevice, "squares of photons");
+}
+
 std::vector<Photon> readPhotons(gpu::Device& device, const PhotonBuffer& photons) {
   std::vector<Photon> all;
   all.reserve(photons.capacity());

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "core/optics/photon.shared.h"
+#include "frame/deposit.shared.h"
 #include "gpu/commands.h"
 
 namespace nephroid {
@@ -31,8 +32,17 @@ class PhotonBuffer {
 
   /// What holds for all photons that are in it now: set by who writes them.
   PhotonBatch batch{};
+  /// Of a grid, if who writes the photons says so (makeSquares): a word for each square of kDepositSquare² cells that
+  /// begins at a multiple of kDepositSquare photons along both axes, row by row; not 0 where the photons in it and
+  /// about it took the same way and where they end bends slowly. Invalid: nothing is known.
+  gpu::Buffer squares;
+  std::uint32_t squaresAcross() const { return squares.valid() ? acrossSquares(batch.grid_width) : 0; }
+  /// Makes room for them, by `batch`. @throws ResourceError
+  void makeSquares(gpu::Device& device);
 
  private:
+  static std::uint32_t acrossSquares(std::uint32_t photons) { return (photons + kDepositSquare - 1) / kDepositSquare; }
+
   std::uint32_t capacity_ = 0;
   std::vector<Chunk> chunks_;
 };

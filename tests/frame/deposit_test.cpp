@@ -35,6 +35,7 @@ struct DepositOptions {
   Reconstruction reconstruction = Reconstruction::kQuads;
   float low_pass = 0.0F;     ///< texels
   bool has_a_plate = false;  ///< 0.5 m over the floor where x > 0
+  bool has_squares = false;  ///< all photons are said to bend slowly
 };
 
 class DepositTest : public testing::GpuTest {
@@ -77,6 +78,11 @@ class DepositTest : public testing::GpuTest {
     PhotonBuffer buffer(device(), kGrid * kGrid);
     buffer.batch = {.grid_width = kGrid, .grid_height = kGrid, .band_count = 1};
     recorder.upload(buffer.chunks()[0].buffer, std::as_bytes(std::span(photons)));
+    if (options.has_squares) {
+      buffer.makeSquares(device());
+      const std::vector<std::uint32_t> all(std::size_t{buffer.squaresAcross()} * buffer.squaresAcross(), 1);
+      recorder.upload(buffer.squares, std::as_bytes(std::span(all)));
+    }
     FluxMap map(device(), kSize, kSize, view_count, true);
     map.clear(recorder, 2.0F * kGrid * kGrid);
     const DepositSurfaces surfaces{layers.views(), layers.surfaces(), 1};
@@ -217,6 +223,38 @@ TEST_F(DepositTest, TwoRunsAreEqual) {
   const std::vector<Photon> photons =
       emit([](double u, double v) { return makePhoton(std::sin(9.0 * u * v), std::cos(7.0 * u)); });
   EXPECT_EQ(deposit(photons, std::span(&view, 1)).steps, deposit(photons, std::span(&view, 1)).steps);
+}
+
+TEST_F(DepositTest, SmallSquaresDoForTheirCells) {
+  // Cells of an eighth to a third of a texel, with more flux on one side.
+  const ViewRecord view = fromAbove();
+  const auto photons = emit([](double u, double v) {
+    const auto flux = static_cast<float>(1.0 + 0.5 * u * u + 0.3 * u * v * v);
+    return makePhoton(0.2 * u + 0.15 * u * u, 0.3 * v + 0.05 * u * v, flux * vec3(1.0F, 2.0F, 0.5F));
+  });
+  const Deposited cells = deposit(photons, std::span(&view, 1)),
+                  squares = deposit(photons, std::span(&view, 1), {.has_squares = true});
+  // Their flux is that of their cells, which are not all alike: to a step of the map for each of them.
+  EXPECT_NEAR(squares.total().x / cells.total().x, 1.0, 2e-6);
+  EXPECT_NEAR(length(squares.lost), 0.0, 1e-9);
+  double off = 0.0;
+  for (std::size_t i = 0; i < cells.flux.size(); ++i) off += std::abs(squares.flux[i].x - cells.flux[i].x);
+  EXPECT_GT(off, 0.0);
+  EXPECT_LT(off, 0.02 * cells.total().x);
+}
+
+TEST_F(DepositTest, LargeSquaresAreDepositedCellByCell) {
+  const ViewRecord view = fromAbove();
+  const auto photons = emit([](double u, double v) { return makePhoton(2.0 * u - 1.0, 1.5 * v + 0.2 * u * u - 1.0); });
+  EXPECT_EQ(deposit(photons, std::span(&view, 1), {.has_squares = true}).steps,
+            deposit(photons, std::span(&view, 1)).steps);
+  // Nor are small ones whose middle lies elsewhere: the grid folds in them.
+  const auto folded = emit([](double u, double v) {
+    const double x = 6.0 * u - std::floor(6.0 * u);
+    return makePhoton(0.12 * std::abs(x - 0.5), 0.2 * v);
+  });
+  const Deposited squares = deposit(folded, std::span(&view, 1), {.has_squares = true});
+  EXPECT_EQ(squares.steps, deposit(folded, std::span(&view, 1)).steps);
 }
 
 TEST_F(DepositTest, NegativeFluxOfBandsIsSubtracted) {

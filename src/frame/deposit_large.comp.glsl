@@ -1,0 +1,47 @@
+// What the passes before leave: large cells and quarters, and those on several pictures. Many threads share each.
+#version 460
+#extension GL_GOOGLE_include_directive : require
+#extension GL_EXT_scalar_block_layout : require
+#extension GL_EXT_control_flow_attributes : require
+#include "frame/deposit_quarters.glsl"
+
+layout(local_size_x = 64) in;
+
+/// A cell on all pictures that show some of it or, if they share surfaces, on the one that its surface faces: each thread
+/// some of its rows.
+/// @param lane  of `lanes` threads
+void addByRows(vec3 places[4], Light light, uint salt, uint lane, uint lanes) {
+  uint faced = kViewsShare ? viewFaced(places, light.direction) : kViewCount;
+  if (kViewsShare && faced == kViewCount && lane == 0u) addToLost(light, salt);
+  for (uint v = kViewsShare ? faced : 0u; v < (kViewsShare ? min(faced + 1u, kViewCount) : kViewCount); ++v) {
+    CellOnPicture shown = cellOnPicture(places, v);
+    if (!mayBeSeen(shown)) continue;
+    Coverage k = coverageOf(shown);
+    Span span = spanOf(shown, places, v);
+    for (float y = k.first.y + float(lane); y < k.end.y; y += float(lanes)) {
+      vec2 row = rowOf(k, y);
+      for (float x = row.x; x < row.y; x += 1.0)
+        addShare(k, vec2(x, y), v, span, light, salt);
+    }
+  }
+}
+
+/// Threads for each: next to each other in the order in which devices let threads go in step.
+const uint kThreadsEach = 16u;
+
+void main() {
+  uint threads = gl_NumWorkGroups.x * gl_WorkGroupSize.x, count = min(large_count, cellCount());
+  for (uint i = gl_GlobalInvocationID.x; i < kThreadsEach * count; i += threads) {
+    uint item = listed[cellCount() + i / kThreadsEach];
+    uint number = item & ((1u << kPartShift) - 1u), part = item >> kPartShift;
+    ivec2 first = firstOf(number);
+    Cell cell = fetchCell(first, 1);
+    bool is_whole = part == kWholePart;
+    Piece piece = quarterOf(first, cell, is_whole ? 0u : part);
+    if (is_whole) {
+      piece.places = cell.places;
+      piece.light = lightOf(cell);
+    }
+    addByRows(piece.places, piece.light, 4u * number + (is_whole ? 0u : part), i % kThreadsEach, kThreadsEach);
+  }
+}
