@@ -106,8 +106,7 @@ RealtimeFrame::RealtimeFrame(gpu::Device& device, const SceneData& scene, const 
   recorder_.submit();
   light_grids_ = std::make_unique<LightGrids>(device, scene, *buffers_, settings.shadow_size, settings.seed);
   makePasses();
-  if (make_technique)
-    technique_ = make_technique({device, scene, *buffers_, *light_grids_, settings.specular_alpha, settings.seed});
+  if (make_technique) makeTechnique(make_technique);
   if (settings.specular) makeSpecular();
   makeCaustic();
   reset();
@@ -143,12 +142,26 @@ ShadingInputs RealtimeFrame::shadingInputs() const {
   return {camera_view_, seen_, tint_, lamps_, environment_, environment_sampler_, *light_grids_};
 }
 
+void RealtimeFrame::makeTechnique(const MakeRealtimeTechnique& make) {
+  RealtimeInputs inputs{device_, scene_, *buffers_, *light_grids_, settings_.specular_alpha, settings_.seed, {}};
+  if (settings_.box_tree_builder) inputs.tree = [this]() -> const TriangleTree& { return triangleTree(); };
+  technique_ = make(inputs);
+}
+
+const TriangleTree& RealtimeFrame::triangleTree() {
+  if (tree_) return *tree_;
+  recorder_.begin();
+  tree_ = std::make_unique<TriangleTree>(device_, recorder_, scene_, settings_.box_tree_builder);
+  recorder_.submit();
+  return *tree_;
+}
+
 void RealtimeFrame::makeSpecular() {
   specular_.reset();
   if (!settings_.box_tree_builder || !buffers_->traits().specular.present) return;
+  const SpecularPass::Inputs inputs{shadingInputs(), triangleTree(),
+                                    technique_ ? technique_->lightReceivers() : nullptr};
   recorder_.begin();
-  if (!tree_) tree_ = std::make_unique<TriangleTree>(device_, recorder_, scene_, settings_.box_tree_builder);
-  const SpecularPass::Inputs inputs{shadingInputs(), *tree_, technique_ ? technique_->lightReceivers() : nullptr};
   specular_ = std::make_unique<SpecularPass>(
       device_, recorder_, *buffers_, inputs, lightConstants(),
       SpecularPass::Following{.max_events = settings_.max_events, .spacing = specularSpacing()});
@@ -229,13 +242,12 @@ void RealtimeFrame::objectsMoved() {
   buffers_->updateInstances(device_, recorder_, scene_);
   recorder_.submit();
   light_grids_->geometryChanged();
+  const bool makes_specular = specular_ != nullptr;
+  specular_.reset();
+  tree_.reset();
   if (technique_) technique_->objectsMoved();
   if (!lightsAreCompiled()) makePasses();
-  if (specular_) {
-    specular_.reset();
-    tree_.reset();
-    makeSpecular();
-  }
+  if (makes_specular) makeSpecular();
   reset();
 }
 

@@ -96,6 +96,9 @@ class RealtimeFrame {
   void makeTargets();
   void makePasses();
   ShadingInputs shadingInputs() const;
+  void makeTechnique(const MakeRealtimeTechnique& make);
+  /// Of the scene as it stands, made once it is asked for.
+  const TriangleTree& triangleTree();
   void makeSpecular();
   /// FrameSettings::specular_spacing, or 1 where the scene forbids cells.
   std::uint32_t specularSpacing() const;
@@ -126,10 +129,10 @@ class RealtimeFrame {
   std::unique_ptr<LightGrids> light_grids_;
   std::unique_ptr<Passes> passes_;
   std::unique_ptr<ComputeRaster> raster_;  ///< where it is used
-  std::unique_ptr<TriangleTree> tree_;     ///< null: nothing is specular
+  std::unique_ptr<TriangleTree> tree_;     ///< null: nobody has asked for it
   std::unique_ptr<ShadePass> shade_;
   std::unique_ptr<RealtimeTechnique> technique_;  ///< null: none, or it has nothing to draw
-  std::unique_ptr<SpecularPass> specular_;        ///< null: nothing is specular
+  std::unique_ptr<SpecularPass> specular_;        ///< null: nobody has asked for it
   std::unique_ptr<CausticPass> caustic_;          ///< where there is one
   std::unique_ptr<DisplayPass> display_;          ///< once somebody asked for it
   std::unique_ptr<ForeignLighting> foreign_;      ///< likewise

@@ -13,6 +13,7 @@
 #include "frame/pixel_surfaces.h"
 #include "frame/receiver_map.h"
 #include "frame/scene_buffers.h"
+#include "frame/triangle_tree.h"
 #include "gpu/commands.h"
 #include "scene/scene_data.h"
 
@@ -26,6 +27,9 @@ struct RealtimeInputs {
   const LightGrids& lights;     ///< its lights in the present sample, and what casts shadows from them
   float specular_alpha;         ///< microfacets finer than this are class S
   std::uint32_t seed;
+  /// What any ray meets; another one once objects have moved. Not to be asked for while passes are recorded.
+  /// Empty: there is no builder for it. @throws ResourceError
+  std::function<const TriangleTree&()> tree;
 };
 
 /// Given for each sample.

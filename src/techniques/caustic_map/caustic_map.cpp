@@ -10,6 +10,7 @@
 #include "frame/emission.shared.h"
 #include "frame/surface_layers.h"
 #include "techniques/caustic_map/emission_views.h"
+#include "techniques/caustic_map/settings.h"
 #include "techniques/realtime/realtime_render.h"
 
 namespace nephroid {
@@ -29,12 +30,14 @@ struct CausticMap::Sink {
 struct CausticMap::Pictures {
   std::vector<ViewRecord> emission;
   gpu::Buffer light;  ///< a LightRecord
+  /// The last two where it is in them that light is followed; the last one also if maps are made.
   std::unique_ptr<SurfaceLayers> first, generators, receivers;
   /// Generators that are receivers too: in the picture of the others they would hide what light reaches through them.
   std::unique_ptr<SurfaceLayers> both;
   FluxMap map, map_of_both;
-  bool maps_are_kept = false;   ///< what is in them is what would be put there
-  std::deque<Photons> photons;  ///< that are kept, one for each run of transport
+  bool receivers_are_drawn = false;  ///< and both
+  bool maps_are_kept = false;        ///< what is in them is what would be put there
+  std::deque<Photons> photons;       ///< that are kept, one for each run of transport
 };
 
 struct CausticMap::Source {
@@ -80,6 +83,12 @@ float boundFlux(LightRecord light, const std::vector<ViewRecord>& views, const s
 
 std::uint32_t countOf(const std::vector<ViewRecord>& views) { return static_cast<std::uint32_t>(views.size()); }
 
+/// Who embeds the frame may have no builder for the tree.
+CausticMapSettings withoutTree(CausticMapSettings settings, const RealtimeInputs& inputs) {
+  if (settings.search == Search::kTree && !inputs.tree) settings.search = Search::kPlanes;
+  return settings;
+}
+
 /// Layers of pictures for at least so many views.
 void makeRoom(std::unique_ptr<SurfaceLayers>& layers, const RealtimeInputs& inputs, std::uint32_t size,
               std::uint32_t views, std::uint32_t count) {
@@ -91,7 +100,7 @@ void makeRoom(std::unique_ptr<SurfaceLayers>& layers, const RealtimeInputs& inpu
 
 CausticMap::CausticMap(const RealtimeInputs& inputs, const CausticMapSettings& settings)
     : inputs_(inputs),
-      settings_(settings),
+      settings_(withoutTree(settings, inputs)),
       directions_(inputs.buffers.traits().gloss || inputs.buffers.traits().metal),
       transport_(inputs.device, inputs.buffers),
       cell_lists_(transport_.makeCellLists(settings.grid)),
@@ -110,6 +119,7 @@ CausticMap::Photons CausticMap::makePhotons() const {
                      .grid_width = settings_.grid,
                      .grid_height = settings_.grid,
                      .band_count = static_cast<std::uint32_t>(bands_.size())};
+    if (settings_.photon_spacing >= kDepositSquare) photons.makeSquares(inputs_.device);
     return photons;
   };
   Photons photons{make(), std::nullopt};
@@ -130,6 +140,7 @@ void CausticMap::makeSources() {
   }
   generator_hull_ = makeGeneratorHull(inputs_.scene, inputs_.specular_alpha, mesh_trees_);
   scene_bounds_ = inputs_.scene.bounds();
+  tree_ = searchesPictures() ? nullptr : &inputs_.tree();
   lights_ = std::make_unique<LightViews>(inputs_.scene, inputs_.seed);
   sources_.resize(lights_->count());
   for (Source& source : sources_) source.is_new = true;
@@ -269,6 +280,7 @@ void CausticMap::record(gpu::CommandRecorder& recorder, const RealtimeSample& sa
 void CausticMap::recordMaps(gpu::CommandRecorder& recorder, const RealtimeSample& sample, const Point& point,
                             Sinks sinks) {
   Pictures& pictures = *point.source->pictures;
+  if (!pictures.receivers_are_drawn) recordReceivers(recorder, point, pictures);
   struct Map {
     DepositSurfaces surfaces;
     FluxMap* flux;
@@ -311,17 +323,26 @@ void CausticMap::recordPictures(gpu::CommandRecorder& recorder, const Point& poi
     pictures.light = gpu::Buffer(inputs_.device, sizeof(LightRecord), VK_BUFFER_USAGE_STORAGE_BUFFER_BIT,
                                  gpu::MemoryIntent::kDevice, "light of a caustic map");
   recorder.upload(pictures.light, std::as_bytes(std::span(&view.light, 1)));
-  const std::uint32_t views = countOf(pictures.emission), map_views = view.light.view_count;
-  const std::uint32_t size = map_views > 1 ? settings_.map_size : settings_.sun_map_size;
+  const std::uint32_t views = countOf(pictures.emission);
   makeRoom(pictures.first, inputs_, settings_.grid, views, 1);
-  makeRoom(pictures.generators, inputs_, settings_.grid, views, settings_.layers);
-  makeRoom(pictures.receivers, inputs_, size, map_views, settings_.receiver_layers);
   pictures.first->record(recorder, pictures.emission, all_);
-  pictures.generators->record(recorder, pictures.emission, generators_);
-  pictures.receivers->record(recorder, view.views, receivers_);
+  if (searchesPictures() || settings_.exit == Exit::kWyman) {
+    makeRoom(pictures.generators, inputs_, settings_.grid, views, settings_.layers);
+    pictures.generators->record(recorder, pictures.emission, generators_);
+  }
+  pictures.receivers_are_drawn = false;
+  if (searchesPictures()) recordReceivers(recorder, point, pictures);
+}
+
+void CausticMap::recordReceivers(gpu::CommandRecorder& recorder, const Point& point, Pictures& pictures) {
+  const std::uint32_t views = point.view.light.view_count;
+  const std::uint32_t size = views > 1 ? settings_.map_size : settings_.sun_map_size;
+  makeRoom(pictures.receivers, inputs_, size, views, settings_.receiver_layers);
+  pictures.receivers->record(recorder, point.view.views, receivers_);
+  pictures.receivers_are_drawn = true;
   if (!transport_.lands()) return;
-  makeRoom(pictures.both, inputs_, size, map_views, 1);
-  pictures.both->record(recorder, view.views, both_);
+  makeRoom(pictures.both, inputs_, size, views, 1);
+  pictures.both->record(recorder, point.view.views, both_);
 }
 
 bool CausticMap::keeps(const Point& point) const { return settings_.emits_once && !point.view.varies; }
@@ -352,8 +373,17 @@ void CausticMap::follow(gpu::CommandRecorder& recorder, std::uint32_t sample, co
                         const std::function<Photons&()>& next, PhotonLedger* ledger,
                         const std::function<void(const Photons&)>& use) {
   const Pictures& pictures = *point.source->pictures;
-  const LightPictures followed{pictures.emission, generator_hull_.bounds(), scene_bounds_,      point.view.views,
-                               *pictures.first,   *pictures.generators,     *pictures.receivers};
+  const auto orFirst = [&](const std::unique_ptr<SurfaceLayers>& layers, bool is_searched) -> const SurfaceLayers& {
+    return is_searched ? *layers : *pictures.first;
+  };
+  const LightPictures followed{pictures.emission,
+                               generator_hull_.bounds(),
+                               scene_bounds_,
+                               point.view.views,
+                               *pictures.first,
+                               orFirst(pictures.generators, searchesPictures() || settings_.exit == Exit::kWyman),
+                               orFirst(pictures.receivers, searchesPictures()),
+                               tree_};
   Sampler sampler(inputs_.seed, kCellStream, sample);
   // Mirrors let nothing in.
   const std::uint32_t last = inputs_.buffers.traits().specular.transmits ? 1 + settings_.internal_reflections : 0;
@@ -370,6 +400,7 @@ void CausticMap::follow(gpu::CommandRecorder& recorder, std::uint32_t sample, co
                               .first_guess = settings_.first_guess,
                               .account = ledger ? &ledger->account() : nullptr,
                               .cell_lists = ledger ? nullptr : &cell_lists_,
+                              .spacing = settings_.weaker_ways ? 1 : settings_.photon_spacing,
                               .specular_alpha = inputs_.specular_alpha};
   for (transport.band_index = 0; transport.band_index < bands_.size(); ++transport.band_index) {
     transport.band = bands_[transport.band_index];
@@ -426,187 +457,9 @@ std::vector<Ledger> CausticMap::account() {
 
 namespace {
 
-std::vector<ParamSpec> makeParams() {
-  const CausticMapSettings defaults;
-  const auto number = [](std::uint32_t value) { return static_cast<int>(value); };
-  std::vector<ParamSpec> params = makeFrameParams();
-  const std::vector<ParamSpec> own{
-      {"grid",
-       number(defaults.grid),
-       8,
-       2048,
-       "cells",
-       "along a side of each picture that a light takes of what bends it; a photon a cell",
-       {}},
-      {"map-size",
-       number(defaults.map_size),
-       16,
-       2048,
-       "texels",
-       "along a side of each face of the cube map that the light of a point is deposited into",
-       {}},
-      {"sun-map-size",
-       number(defaults.sun_map_size),
-       16,
-       4096,
-       "texels",
-       "along a side of the map that parallel light is deposited into",
-       {}},
-      {"receiver-map-size",
-       number(defaults.receiver_map_size),
-       16,
-       2048,
-       "texels",
-       "along a side of each view along an axis, into which light is deposited for what mirrors and glass show; fewer "
-       "where "
-       "a million would not do for all views",
-       {}},
-      {"layers",
-       number(defaults.layers),
-       1,
-       16,
-       "",
-       "surfaces behind one another, as seen from the light, that light is followed through",
-       {}},
-      {"receiver-layers",
-       number(defaults.receiver_layers),
-       1,
-       16,
-       "",
-       "surfaces behind one another, as seen from the light, that light may end on",
-       {}},
-      {"internal-reflections",
-       number(defaults.internal_reflections),
-       0,
-       8,
-       "",
-       "inside a solid that are followed before light leaves it",
-       {}},
-      {"weaker-ways",
-       defaults.weaker_ways,
-       0,
-       0,
-       "",
-       "whether the weaker of two ways is followed too, the first time that light which enters a solid and leaves it "
-       "has "
-       "both: hollow bodies, several bodies behind one another",
-       {}},
-      {"iterations", number(defaults.iterations), 1, 64, "", "to find where a ray meets what bends it", {}},
-      {"receiver-iterations", number(defaults.receiver_iterations), 1, 64, "", "to find where it ends", {}},
-      {"search",
-       std::string("planes"),
-       0,
-       0,
-       "",
-       "how the receiver is found: Newton's method on the planes of texels, from steps along the ray on; or as the "
-       "paper "
-       "and those it compares with do",
-       {"planes", "iterate", "newton", "secant", "march"}},
-      {"exit",
-       std::string("planes"),
-       0,
-       0,
-       "",
-       "how the back face is found: as receivers are, or by Wyman's approximation",
-       {"planes", "wyman"}},
-      {"flux",
-       std::string("beam"),
-       0,
-       0,
-       "",
-       "what a photon carries: the light's flux through its cell; or, for comparison, that times the cosine at the "
-       "surface, as eq. 6 of the paper has it, with which a sphere loses a third of its flux",
-       {"beam", "eq6"}},
-      {"first-guess",
-       0.0F,
-       0,
-       1e6,
-       "m",
-       "of the distance, for all but planes and march; 0: what is seen where the ray starts",
-       {}},
-      {"bands",
-       number(defaults.bands),
-       1,
-       12,
-       "",
-       "of wavelength that are followed, where a material disperses light",
-       {}},
-      {"points", number(defaults.points), 1, 256, "", "that a light with a size is taken for, each sample", {}},
-      {"directions", number(defaults.directions), 1, 1024, "", "that the environment is taken for, each sample", {}},
-      {"reconstruct",
-       std::string("quads"),
-       0,
-       0,
-       "",
-       "how flux is spread: over the cells between photons, or each photon as a Gaussian splat",
-       {"quads", "splats"}},
-      {"target",
-       std::string("camera"),
-       0,
-       0,
-       "",
-       "the picture that photons are deposited into: the camera's own pixels, or a map in the light's view",
-       {"camera", "light"}},
-      {"emit",
-       std::string("every-frame"),
-       0,
-       0,
-       "",
-       "whether lights without a size send other photons in each sample, or keep them until something changes",
-       {"every-frame", "once"}},
-      {"splat-radius", defaults.splat_radius, 0.5, 32, "texels", "of a splat", {}},
-      {"low-pass",
-       defaults.low_pass,
-       0,
-       16,
-       "texels",
-       "standard deviation of a Gaussian that blurs what was deposited and keeps the flux of each surface, in the "
-       "light's map or in the camera's pixels; 0: none",
-       {}},
-  };
-  params.insert(params.end(), own.begin(), own.end());
-  return params;
-}
-
-Search searchOf(const std::string& name) {
-  if (name == "iterate") return Search::kIterate;
-  if (name == "newton") return Search::kNewton;
-  if (name == "secant") return Search::kSecant;
-  if (name == "march") return Search::kMarch;
-  return Search::kPlanes;
-}
-
-CausticMapSettings makeSettings(const ParamSet& params) {
-  const auto count = [&](const char* name) { return static_cast<std::uint32_t>(params.getInt(name)); };
-  CausticMapSettings settings;
-  settings.grid = count("grid");
-  settings.map_size = count("map-size");
-  settings.sun_map_size = count("sun-map-size");
-  settings.receiver_map_size = count("receiver-map-size");
-  settings.layers = count("layers");
-  settings.receiver_layers = count("receiver-layers");
-  settings.internal_reflections = count("internal-reflections");
-  settings.weaker_ways = params.getBool("weaker-ways");
-  settings.iterations = count("iterations");
-  settings.receiver_iterations = count("receiver-iterations");
-  settings.search = searchOf(params.getString("search"));
-  settings.exit = params.getString("exit") == "wyman" ? Exit::kWyman : Exit::kPlanes;
-  if (params.getString("flux") == "eq6") settings.flux = CellFlux::kEq6;
-  settings.first_guess = params.getFloat("first-guess");
-  settings.bands = count("bands");
-  settings.points = count("points");
-  settings.directions = count("directions");
-  if (params.getString("reconstruct") == "splats") settings.reconstruction = Reconstruction::kSplats;
-  if (params.getString("target") == "light") settings.target = DepositTarget::kLight;
-  settings.emits_once = params.getString("emit") == "once";
-  settings.splat_radius = params.getFloat("splat-radius");
-  settings.low_pass = params.getFloat("low-pass");
-  return settings;
-}
-
 std::unique_ptr<RealtimeTechnique> makeCausticMap(const RealtimeInputs& inputs, const ParamSet& params) {
   if (std::ranges::none_of(inputs.buffers.draws(), &SceneBuffers::Draw::generates)) return nullptr;
-  return std::make_unique<CausticMap>(inputs, makeSettings(params));
+  return std::make_unique<CausticMap>(inputs, makeCausticMapSettings(params));
 }
 
 RenderResult renderCausticMap(const SceneData& scene, const Camera& camera, const RenderSettings& settings,
@@ -620,11 +473,12 @@ Technique makeCausticMapTechnique() {
   Technique technique;
   technique.name = "caustic-map";
   technique.text =
-      "caustics in real time, on a Vulkan device: light is followed through glass, off metal and into water in the "
-      "pictures that it takes of the scene, and deposited into a map in its own view";
+      "caustics in real time, on a Vulkan device: photons from a grid over what bends light are followed through "
+      "glass, "
+      "off metal and into water, and deposited into the camera's pixels, or into a map in the light's view";
   technique.source = "Shah, Konttinen, Pattanaik 2007";
   technique.on_vulkan = true;
-  technique.params = makeParams();
+  technique.params = makeCausticMapParams();
   technique.make_realtime = makeCausticMap;
   technique.lights_receivers = true;
   technique.account = [](RealtimeTechnique& drawn) { return static_cast<CausticMap&>(drawn).account(); };

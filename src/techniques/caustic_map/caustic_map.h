@@ -1,4 +1,4 @@
-// Caustic maps: light followed in the pictures that it takes, deposited into the light's view
+// Caustic maps: light followed from grids over what bends it, deposited into the pixels or into the light's view
 // ([shah-caustics-mapping]).
 #pragma once
 
@@ -17,44 +17,11 @@
 #include "techniques/caustic_map/generator_hull.h"
 #include "techniques/caustic_map/look_up.h"
 #include "techniques/caustic_map/photon_ledger.h"
+#include "techniques/caustic_map/settings.h"
 #include "techniques/caustic_map/transport.h"
 #include "techniques/technique.h"
 
 namespace nephroid {
-
-/// The picture that photons are deposited into.
-enum class DepositTarget : std::uint8_t {
-  kCamera,  ///< the pixels themselves: as sharp as they are, and made anew for each picture
-  kLight,   ///< a map in the light's view, or a cube map about it, which any surface can look up
-};
-
-struct CausticMapSettings {
-  std::uint32_t grid = 256;      ///< cells along a side of each of the emission's views
-  std::uint32_t map_size = 256;  ///< texels along a side of each face of a point's cube map
-  std::uint32_t sun_map_size = 1024;
-  std::uint32_t receiver_map_size = ReceiverMapSettings{}.size;  ///< of what mirrors and glass show, at the most
-  std::uint32_t layers = 4;           ///< surfaces behind one another that light is followed through, from the light
-  std::uint32_t receiver_layers = 4;  ///< likewise that it may end on
-  std::uint32_t internal_reflections = 2;
-  bool weaker_ways = false;      ///< also follows the first way that light is sent along less than along another
-  std::uint32_t iterations = 8;  ///< to find where a ray meets a generator,
-  std::uint32_t receiver_iterations = 8;  ///< and a receiver
-  Search search = Search::kPlanes;
-  Exit exit = Exit::kPlanes;
-  CellFlux flux = CellFlux::kBeam;
-  float first_guess = 0.0F;       ///< of the paper's methods, m; 0: what is seen where the ray starts
-  std::uint32_t max_events = 8;   ///< of class S, on the way of a photon
-  std::uint32_t bands = 7;        ///< of wavelength, where a material disperses
-  std::uint32_t points = 4;       ///< that a light with a size is taken for, each sample
-  std::uint32_t directions = 16;  ///< likewise of the environment
-  Reconstruction reconstruction = Reconstruction::kQuads;
-  float splat_radius = 1.5F;  ///< texels
-  float low_pass = 0.0F;      ///< texels: deviation of a Gaussian over what is deposited; 0: none
-  DepositTarget target = DepositTarget::kCamera;
-  /// Photons of lights without a size stay, in the middles of their cells, until a light or an object changes; else
-  /// each sample has its own.
-  bool emits_once = false;
-};
 
 /// One map for each light, or for each point of it, drawn and looked up in one sample.
 class CausticMap : public RealtimeTechnique {
@@ -86,6 +53,9 @@ class CausticMap : public RealtimeTechnique {
   /// Of a source that stays, its views are fitted only when it is new.
   Point makePoint(const LightView& view, Source& source, float weight) const;
   void recordPictures(gpu::CommandRecorder& recorder, const Point& point, Pictures& pictures);
+  /// What else the light sees than what bends it, for maps and where light is followed in pictures.
+  void recordReceivers(gpu::CommandRecorder& recorder, const Point& point, Pictures& pictures);
+  bool searchesPictures() const { return settings_.search != Search::kTree; }
   /// From the light to where its photons end, one view, branch and band after the other.
   /// @param next    where the next photons are written
   /// @param ledger  null: nobody asks what becomes of them
@@ -118,6 +88,7 @@ class CausticMap : public RealtimeTechnique {
   MeshTrees mesh_trees_;
   GeneratorHull generator_hull_;
   Bounds scene_bounds_;
+  const TriangleTree* tree_ = nullptr;  ///< if it is searched
   std::unique_ptr<LightViews> lights_;
   Transport transport_;
   CellLists cell_lists_;

@@ -1,8 +1,8 @@
-// Lists of the cells of an emission grid that have something to say in a branch, so that the others cost nothing.
+// Lists of the cells of an emission grid that have something to say, so that the others cost nothing.
 //
 // The order in a list differs between runs; each photon has its place in the grid all the same. Every list begins with
-// the number of groups of the pass that goes through it. Branch b reads its list while it writes that of b + 1: two
-// thirds of the buffer serve all branches, the third one is the list of cells whose weaker way is followed.
+// the number of groups of the pass that goes through it. Lists are made and gone through one after the other and share
+// their place, but for the one of cells whose weaker way is followed.
 //
 // The including shader gives the binding NEPHROID_CELL_LISTS_BINDING.
 #ifndef NEPHROID_CELL_LISTS_GLSL
@@ -16,9 +16,9 @@ layout(scalar, set = 0, binding = NEPHROID_CELL_LISTS_BINDING) buffer CellLists 
 };
 
 /// @param cells  of the whole grid
-uint firstOfList(uint list, uint cells) { return (list == kWeakerList ? 2u : list & 1u) * cells; }
+uint firstOfList(uint list, uint cells) { return list == kWeakerList ? cells : 0u; }
 
-/// @param list  the number of a branch, or kWeakerList
+/// @param list  TransportPush::list
 void addToList(uint list, uint cells, uint cell) {
   uint place = atomicAdd(heads[list].count, 1u);
   if (place % kListGroup == 0u) {

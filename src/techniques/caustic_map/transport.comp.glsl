@@ -1,8 +1,9 @@
 // From the light to where its photons end: one thread a cell of the emission grid, one branch a dispatch. Either all
-// cells, or those of a list, which also makes the next branch's list.
+// cells, or those of a list; then it is also noted which cells wait for the next branch.
 //
-// Emission, refraction at front and back faces, and the receiver, all in pictures that the light takes
-// ([shah-caustics-mapping] §III-B to D). Photons stay in the order of the grid; those that end nowhere say why.
+// Emission, refraction at front and back faces, and the receiver ([shah-caustics-mapping] §III-B to D), by the tree of
+// all triangles or in pictures that the light takes. Photons stay in the order of the grid; those that end nowhere
+// say why.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_scalar_block_layout : require
@@ -11,29 +12,36 @@
 
 layout(push_constant, scalar) uniform Push { TransportPush push; };
 #define max_events push.max_events
+#define tree_nodes push.tree_nodes
+#define tree_orders push.tree_orders
+#define tree_grid_lower push.tree_grid_lower
+#define tree_grid_scale push.tree_grid_scale
 
 layout(scalar, set = 0, binding = 7) readonly buffer Views {
+  Surroundings surroundings;
   ViewRecord emission_views[kMostEmissionViews];
   PictureView picture_views[];  // the same, then those of receivers
 };
 layout(set = 0, binding = 16) uniform usampler2D neighbour_table;
-layout(constant_id = 21) const uint kSearch = kSearchPlanes;
-layout(constant_id = 22) const uint kExit = kExitPlanes;
+layout(constant_id = 31) const uint kSearch = kSearchTree;
+layout(constant_id = 32) const uint kExit = kExitExact;
 #include "techniques/caustic_map/receiver_search.glsl"
+#define NEPHROID_TREE_BINDINGS 24
+#include "frame/triangle_tree.glsl"
 #include "frame/emission.shared.h"
 #define NEPHROID_PHOTON_BINDING 14
 #include "frame/photons.glsl"
 #define NEPHROID_CELL_LISTS_BINDING 19
 #include "techniques/caustic_map/cell_lists.glsl"
 
-layout(constant_id = 20) const bool kAccounts = false;  // keeps the ledger's accounts: costs time
-layout(constant_id = 23) const uint kGeneratorViews = 1u;
-layout(constant_id = 24) const uint kGeneratorLayers = 1u;
-layout(constant_id = 25) const uint kReceiverViews = 1u;
-layout(constant_id = 26) const uint kReceiverLayers = 1u;
-layout(constant_id = 27) const bool kListed = false;
-layout(constant_id = 28) const bool kFluxEq6 = false;
-layout(constant_id = 29) const bool kLands = false;  // some generators have diffuse lobes too
+layout(constant_id = 30) const bool kAccounts = false;  // keeps the ledger's accounts: costs time
+layout(constant_id = 33) const uint kGeneratorViews = 1u;
+layout(constant_id = 34) const uint kGeneratorLayers = 1u;
+layout(constant_id = 35) const uint kReceiverViews = 1u;
+layout(constant_id = 36) const uint kReceiverLayers = 1u;
+layout(constant_id = 37) const bool kListed = false;
+layout(constant_id = 38) const bool kFluxEq6 = false;
+layout(constant_id = 39) const bool kLands = false;  // some generators have diffuse lobes too
 layout(local_size_x = 8, local_size_y = 8) in;
 layout(scalar, set = 0, binding = 8) readonly buffer Lights { LightRecord lights[]; };
 layout(set = 0, binding = 9) uniform usampler2DArray first_seen;  // of the emission's views: all that there is
@@ -52,6 +60,8 @@ layout(scalar, set = 0, binding = 20) buffer Forks { Fork forks[]; };
 layout(scalar, set = 0, binding = 21) buffer ForkInteriors { Interior fork_interiors[]; };
 layout(scalar, set = 0, binding = 22) writeonly buffer FirstLandings { Photon first_landings[]; };
 layout(scalar, set = 0, binding = 23) writeonly buffer SecondLandings { Photon second_landings[]; };
+#define NEPHROID_STANDINGS_BINDING 26
+#include "techniques/caustic_map/standings.glsl"
 
 /// A photon on its way.
 struct Flight {
@@ -63,11 +73,13 @@ struct Flight {
   uint chances;         // to leave what it is inside of, that it passed
   bool decided;         // the branch has nothing more to say
   bool forks;           // the next branch goes another way than this one
+  bool varies;          // by textures, from place to place of what it met
   bool left_weaker;     // went past, or along, the first weaker way that no branch takes
   int closed;           // closed solids that it is inside of
   uint landings;        // photons that were left on the way
   float last_distance;  // m, since the last event
   vec3 place;           // on what was met last
+  vec3 facing;          // its normal, of what it ended on
   vec3 normal;          // of what was bent at last, and the direction before
   vec3 from;
   PhotonAccount account;
@@ -127,7 +139,7 @@ Photon describe(Flight flight, uint index) {
   Photon photon;
   bool valid = flight.outcome == kOutcomeDeposited;
   uint flags = (valid ? kPhotonValid : 0u) | (flight.outcome == kOutcomeEscaped ? kPhotonLeftScene : 0u) |
-               (flight.outcome << kOutcomeShift);
+               (flight.outcome << kOutcomeShift) | (kListed && flight.varies ? kPhotonVaries : 0u);
   photon.position = valid ? flight.place : flight.path.ray.origin;
   photon.path_length = flight.last_distance;
   photon.direction = flight.path.ray.dir;
@@ -136,7 +148,7 @@ Photon describe(Flight flight, uint index) {
   photon.index = index;
   photon.chain = flight.chain;
   photon.footprint_major = photon.footprint_minor = 0.0;
-  photon.footprint_orientation = 0u;
+  photon.footprint_orientation = valid ? packUnitVector(flight.facing) : 0u;
   return photon;
 }
 
@@ -278,6 +290,7 @@ void bend(inout Flight flight, Met met) {
   Way reflected = reflection(scattered, e.surface), transmitted = transmission(scattered, e.surface);
   // Of flux, not of radiance: it does not know the index.
   transmitted.weight /= radianceScale(optics);
+  flight.varies = flight.varies || e.material.varies;
   flight.normal = e.surface.geometric;
   flight.from = flight.path.ray.dir;
   Choice choice = chooseWay(reflected, transmitted, events, e.crossing.is_solid && !e.crossing.entering, flight);
@@ -306,7 +319,11 @@ void endOn(inout Flight flight, Met met) {
 
 /// Follows what ended so through what absorbs: once, not in each turn of the loop, which all threads take together.
 void arriveAtEnd(inout Flight flight, Met met) {
-  if (kSceneHasMedia && flight.path.ended && flight.outcome == kOutcomeDeposited) arrive(flight, met);
+  if (!flight.path.ended || flight.outcome != kOutcomeDeposited) return;
+  if (kSceneHasMedia) arrive(flight, met);
+  InstanceRecord instance = fetchInstance(met.instance);
+  Triangle corners = toWorld(instance, fetchTriangle(instance.first_triangle + met.triangle));
+  flight.facing = normalize(cross(corners.b - corners.a, corners.c - corners.a));
 }
 
 /// Ends the flight on a surface, or leads it straight through, as shadows are: panes tint it, of what is partly there a
@@ -324,6 +341,7 @@ void meetReceiver(inout Flight flight, Met met) {
   }
   if (largest(pass) <= 0.0) {
     flight.path.ended = true;
+    flight.facing = e.surface.geometric;
     flight.outcome = is_first ? kOutcomeBlocked : kOutcomeDeposited;
     return;
   }
@@ -342,24 +360,49 @@ void depart(inout Flight flight) {
   if (kAccounts && isOwn(flight)) flight.account.absorbed += before - flight.path.throughput;
 }
 
-/// The next surface, or how the flight ends.
-Met meetNext(inout Flight flight, Pictures generators, Pictures receivers) {
+/// Light that has entered a solid is sought where its back face is seen, if Wyman's approximation is asked for.
+bool leavesByWyman(Flight flight, Pictures generators) {
+  return kExit == kExitWyman && flight.path.events == 1u && dot(flight.path.ray.dir, flight.normal) < 0.0 &&
+         generators.layer_count > 1u;
+}
+
+/// What is met next.
+struct Next {
+  Met met;
+  bool is_hidden;  // something that no picture shows
+};
+
+/// By the tree of all triangles.
+Next nextInTree(inout Flight flight, Pictures generators) {
+  Ray ray = flight.path.ray;
+  Met met;
+  if (leavesByWyman(flight, generators)) {
+    met = meetBackFace(ray, flight.normal, flight.from, generators, generator_seen, generator_surfaces);
+  } else {
+    met = meetFirst(ray, flight.path.instance, flight.path.triangle);
+  }
+  flight.place = ray.origin + met.t * ray.dir;
+  return Next(met, false);
+}
+
+/// In the pictures that the light has taken.
+Next nextInPictures(inout Flight flight, Pictures generators, Pictures receivers) {
   bool hidden = false, hidden_receiver = false;
   Ray ray = flight.path.ray;
   Start start = Start(flight.path.instance, flight.path.triangle);
-  float t_end = leaveBox(ray, push.generator_lower, push.generator_upper);
-  Met met = Met(kFarAway, 0.0, 0.0, kNowhere, 0u);
-  bool has_entered = flight.path.events == 1u && dot(ray.dir, flight.normal) < 0.0 && generators.layer_count > 1u;
-  if (kExit == kExitWyman && has_entered)
+  float t_end = leaveBox(ray, surroundings.generator_lower, surroundings.generator_upper);
+  Met met;
+  if (leavesByWyman(flight, generators)) {
     met = meetBackFace(ray, flight.normal, flight.from, generators, generator_seen, generator_surfaces);
-  else  // What is near is the surface that it starts from, as a rule: the first step is to tell.
+  } else {  // What is near is the surface that it starts from, as a rule: the first step is to tell.
     met = meetLayers(ray, t_end, kFarAway, start, generators, generator_seen, generator_surfaces, generator_depths,
                      push.iterations, false, hidden);
+  }
   // From inside a closed solid there is no way but through its surface.
-  if (kExit == kExitPlanes && flight.closed > 0 && met.instance == kNowhere) met = walkToExit(ray, start);
+  if (kExit == kExitExact && flight.closed > 0 && met.instance == kNowhere) met = walkToExit(ray, start);
   // The pictures hold all generators, so what leaves them meets none; what starts beside them may.
   if (hidden) hidden = !placeInPictures(generators, ray.origin).inside;
-  t_end = leaveBox(ray, push.scene_lower, push.scene_upper);
+  t_end = leaveBox(ray, surroundings.scene_lower, surroundings.scene_upper);
   Met receiver;
   if (kSearch == kSearchPlanes) {
     receiver = meetLayers(ray, t_end, met.t, start, receivers, receiver_seen, receiver_surfaces, receiver_depths,
@@ -372,15 +415,27 @@ Met meetNext(inout Flight flight, Pictures generators, Pictures receivers) {
   // A receiver beyond a surface that is not found is not met.
   bool is_enclosed = flight.closed > 0 && met.instance == kNowhere;
   if (receiver.t < met.t) met = receiver;
-  if (is_enclosed || met.instance == kNowhere) {
-    // Nor does light go on for ever in water that a basin bounds: the pictures do not have the place.
-    bool is_inside = flight.path.interior.solids.x != 0u;
-    flight.outcome = is_enclosed || is_inside || hidden || hidden_receiver ? kOutcomeHidden : kOutcomeEscaped;
+  if (is_enclosed) met.instance = kNowhere;
+  // Nor does light go on for ever in water that a basin bounds: the pictures do not have the place.
+  bool is_inside = flight.path.interior.solids.x != 0u;
+  return Next(met, is_enclosed || is_inside || hidden || hidden_receiver);
+}
+
+/// The next surface, or how the flight ends.
+Met meetNext(inout Flight flight, Pictures generators, Pictures receivers) {
+  Next next;
+  if (kSearch == kSearchTree) {
+    next = nextInTree(flight, generators);
+  } else {
+    next = nextInPictures(flight, generators, receivers);
+  }
+  if (next.met.instance == kNowhere) {
+    flight.outcome = next.is_hidden ? kOutcomeHidden : kOutcomeEscaped;
     flight.path.ended = true;
     if (flight.outcome == kOutcomeEscaped) depart(flight);
     if (flight.outcome == kOutcomeEscaped && flight.path.events == 0u) flight.outcome = kOutcomeMissed;
   }
-  return met;
+  return next.met;
 }
 
 /// Ends that another branch has to say: before the first event the first branch, else see isOwn.
@@ -400,10 +455,9 @@ void leaveToOthers(inout Flight flight) {
 bool chooseCell(out uvec2 cell) {
   cell = gl_GlobalInvocationID.xy;
   if (!kListed) return cell.x < push.grid && cell.y < push.grid;
-  uint list = followsWeaker() ? kWeakerList : push.branch;
   uint i = (gl_WorkGroupID.y * kMostGroups + gl_WorkGroupID.x) * kListGroup + gl_LocalInvocationIndex;
-  if (i >= heads[list].count) return false;
-  uint index = listed[firstOfList(list, push.grid * push.grid) + i];
+  if (i >= heads[push.list].count) return false;
+  uint index = listed[firstOfList(push.list, push.grid * push.grid) + i];
   cell = uvec2(index % push.grid, index / push.grid);
   return true;
 }
@@ -423,8 +477,8 @@ void main() {
   PhotonAccount account =
       PhotonAccount(push.branch == 0u ? flux : none, none, none, none, none, none, none, none, none);
   Flight flight =
-      Flight(path, index, 0u, 0u, kOutcomeDeposited, 0u, false, false, false, 0, 0u, 0.0, ray.origin, none, none,
-             account);
+      Flight(path, index, 0u, 0u, kOutcomeDeposited, 0u, false, false, false, false, 0, 0u, 0.0, ray.origin, none, none,
+             none, account);
 
   Pictures generators = Pictures(0u, kGeneratorViews, kGeneratorLayers, push.generator_size);
   Pictures receivers = Pictures(kGeneratorViews, kReceiverViews, kReceiverLayers, push.receiver_size);
@@ -435,7 +489,7 @@ void main() {
   else if (isBlocker(met.instance)) flight.outcome = kOutcomeBlocked;
   flight.path.ended = flight.outcome != kOutcomeDeposited;
 
-  bool resumes = kListed && push.branch > 1u;
+  bool resumes = kListed && !followsWeaker() && hasFork(standings[index]);
   // Before the loop, which looks for the next surface even where no thread needs it: all that is met first bends light.
   if (!kSceneHasPassable && !flight.path.ended && !resumes) {
     flight.last_distance = met.t;
@@ -461,8 +515,8 @@ void main() {
   leaveToOthers(flight);
   photons[index] = describe(flight, index);
   if (kAccounts) accounts[index] = flight.account;
+  if (!kListed || followsWeaker()) return;
   // Where no way forks here, branches beyond have nothing to say.
-  uint cells = push.grid * push.grid;
-  if (kListed && !isLast() && flight.forks) addToList(push.branch + 1u, cells, index);
-  if (kListed && !followsWeaker() && flight.left_weaker) addToList(kWeakerList, cells, index);
+  standings[index] = !isLast() && flight.forks ? waitsFor(push.branch + 1u, push.branch > 0u) : kIsDone;
+  if (flight.left_weaker) addToList(kWeakerList, push.grid * push.grid, index);
 }

@@ -1,4 +1,4 @@
-// From the light to where its photons end, in pictures that it takes ([shah-caustics-mapping], §III-B to D).
+// From the light to where its photons end ([shah-caustics-mapping], §III-B to D).
 #pragma once
 
 #include <array>
@@ -11,7 +11,9 @@
 #include "frame/photon_buffer.h"
 #include "frame/scene_buffers.h"
 #include "frame/surface_layers.h"
+#include "frame/triangle_tree.h"
 #include "gpu/commands.h"
+#include "techniques/caustic_map/cell_work.h"
 #include "techniques/caustic_map/transport.shared.h"
 
 namespace nephroid {
@@ -25,24 +27,27 @@ struct LightPictures {
   const SurfaceLayers& generators;             ///< what they show of generators
   const SurfaceLayers& receivers;              ///< what the others show of all that is no generator: black things
                                                ///< too, and what lies behind panes if it has several layers
+  const TriangleTree* tree = nullptr;          ///< of the scene: for Search::kTree, which then needs neither of the
+                                               ///< last two, unless for Exit::kWyman
 };
 
-/// How a receiver is found (receiver_search.glsl): the default exactly, the others as the paper does and compares.
+/// How it is found what light meets on its way: exactly, or in pictures that the light has taken. The last four are for
+/// receivers alone, as the paper does it and what it compares with (receiver_search.glsl); what bends light is then
+/// found as by kPlanes.
 enum class Search : std::uint8_t {
+  kTree = kSearchTree,        ///< by LightPictures::tree
   kPlanes = kSearchPlanes,    ///< Newton's method on the planes that are seen, then over the surface
   kIterate = kSearchIterate,  ///< the paper's own
   kNewton = kSearchNewton,    ///< with finite differences
   kSecant = kSearchSecant,
   kMarch = kSearchMarch,
 };
-/// How light leaves what it has entered: exactly, or at the back face that Wyman's approximation finds.
-enum class Exit : std::uint8_t { kPlanes = kExitPlanes, kWyman = kExitWyman };
+/// How light leaves what it has entered: as it meets all else, or at the back face that Wyman's approximation finds.
+enum class Exit : std::uint8_t { kExact = kExitExact, kWyman = kExitWyman };
 /// What a photon carries: the light's flux through its cell, or that times the cosine at the surface that it meets
 /// first, as eq. 6 of the paper has it. Laid out in the light's view a cell has that cosine already, so the latter
 /// loses flux, of a sphere under a sun a third: for comparison.
 enum class CellFlux : std::uint8_t { kBeam, kEq6 };
-
-struct CellLists;
 
 /// Photons on diffuse lobes of generators, which light meets on its way: the first of each path, the second.
 using Landings = std::array<PhotonBuffer, kLandings>;
@@ -61,8 +66,8 @@ struct TransportSettings {
   std::uint32_t seed = 0;                 ///< of the facets of rough surfaces: another one for each frame
   std::uint32_t iterations = 8;           ///< to find where a ray meets a generator,
   std::uint32_t receiver_iterations = 8;  ///< and a receiver
-  Search search = Search::kPlanes;
-  Exit exit = Exit::kPlanes;
+  Search search = Search::kTree;
+  Exit exit = Exit::kExact;
   CellFlux flux = CellFlux::kBeam;
   float first_guess = 0.0F;  ///< of the paper's methods, m; 0: what is seen where the ray starts
   /// For the ledger (PhotonLedger::account): what stays on the way. Of no use without it, and it takes time.
@@ -72,6 +77,10 @@ struct TransportSettings {
   /// valid. All branches must be recorded one after the other, from 0 on, with these settings. Not with `account`, to
   /// which all cells count.
   const CellLists* cell_lists = nullptr;
+  /// With lists: photons are followed from cells so far apart along both axes first, and where they agree those between
+  /// are interpolated (cell_work.h); elsewhere half as far apart, and so on. A power of two; 1: all are followed. Where
+  /// light lands on generators (Transport::lands) or weaker ways are followed, all are.
+  std::uint32_t spacing = 1;
   /// Where photons on generators are written, as many each as there are cells; those of other cells are zeros. Not
   /// with `account`. Where no generator is a receiver too (Transport::lands) they are not touched.
   const Landings* landings = nullptr;
@@ -80,11 +89,6 @@ struct TransportSettings {
   /// Of branch 1: goes on along the weaker of two ways where the branch went along the stronger one, the first time
   /// that no other branch takes both. By lists it is to be recorded after all branches.
   bool follows_weaker = false;
-};
-
-/// What branches leave to one another: cells, and flights where they fork.
-struct CellLists {
-  gpu::Buffer cells, forks, interiors;
 };
 
 /// Not thread-safe. Device and buffers must outlive it.
@@ -96,10 +100,10 @@ class Transport {
   /// Is some generator a receiver too?
   bool lands() const { return lands_; }
 
-  /// For grids of so many cells along a side.
-  CellLists makeCellLists(std::uint32_t grid) const;
+  /// For grids of so many cells along a side. @throws ResourceError
+  CellLists makeCellLists(std::uint32_t grid) const { return cells_.makeLists(grid); }
 
-  /// Records one pass for a light and an emission view: a photon for each cell, row by row.
+  /// Records passes for a light and an emission view: a photon for each cell, row by row.
   /// @param lights   LightRecords
   /// @param light    of them
   /// @param view     of the emission's
@@ -108,18 +112,19 @@ class Transport {
               std::uint32_t light, std::uint32_t view, const TransportSettings& settings, const PhotonBuffer& photons);
 
  private:
+  struct Flights;
   /// Makes photons zeros.
   static void clear(gpu::CommandRecorder& recorder, const PhotonBuffer& photons);
-  /// Makes the first branch's list.
-  void listCells(gpu::CommandRecorder& recorder, const LightPictures& pictures, const gpu::Buffer& lists,
-                 const TransportPush& push);
+  /// Records the pass itself: over all cells, or over those of a list.
+  void recordFlights(gpu::CommandRecorder& recorder, const Flights& flights, const TransportPush& push);
+  void recordListed(gpu::CommandRecorder& recorder, const Flights& flights, TransportPush push);
   const gpu::ComputePipeline& pipelineFor(const LightPictures& pictures, const TransportSettings& settings);
 
   gpu::Device& device_;
   const SceneBuffers& buffers_;
   bool lands_;
   std::map<std::vector<std::uint32_t>, gpu::ComputePipeline> pipelines_;  ///< by what they are compiled for
-  gpu::ComputePipeline list_cells_;
+  CellWork cells_;
   gpu::Buffer views_, nothing_;  ///< the latter where something has to be bound
 };
 

@@ -21,6 +21,9 @@ NEPHROID_CONST uint kOutcomeNoWay = 8u;     // there is no such branch, or anoth
 NEPHROID_CONST uint kOutcomeNumerical = 9u;  // not a number
 NEPHROID_CONST uint kOutcomeCount = 10u;
 
+/// Another flag: what a photon met varies by textures, so that nothing is known of those beside it. Of cells of lists.
+NEPHROID_CONST uint kPhotonVaries = 128u;
+
 /// Where the flux of a cell stayed that its photon does not carry, W: for the ledger. Of what branches have in common
 /// each share is in the account of one of them.
 struct PhotonAccount {
@@ -41,13 +44,14 @@ NEPHROID_CONST uint kLedgerKinds = kAccountKinds + kOutcomeCount;
 /// Photons that a thread adds up: few enough that rounding does not count.
 NEPHROID_CONST uint kLedgerRow = 64u;
 
-// How a receiver is found, and the back face of what light has entered: see receiver_search.glsl.
-NEPHROID_CONST uint kSearchPlanes = 0u;  // layered_view.glsl
-NEPHROID_CONST uint kSearchIterate = 1u;
-NEPHROID_CONST uint kSearchNewton = 2u;
-NEPHROID_CONST uint kSearchSecant = 3u;
-NEPHROID_CONST uint kSearchMarch = 4u;
-NEPHROID_CONST uint kExitPlanes = 0u;
+// How it is found what light meets: Search and Exit of transport.h.
+NEPHROID_CONST uint kSearchTree = 0u;     // triangle_tree.glsl
+NEPHROID_CONST uint kSearchPlanes = 1u;   // layered_view.glsl
+NEPHROID_CONST uint kSearchIterate = 2u;  // these: receiver_search.glsl
+NEPHROID_CONST uint kSearchNewton = 3u;
+NEPHROID_CONST uint kSearchSecant = 4u;
+NEPHROID_CONST uint kSearchMarch = 5u;
+NEPHROID_CONST uint kExitExact = 0u;
 NEPHROID_CONST uint kExitWyman = 1u;
 
 /// Photons that a branch may leave on diffuse lobes of generators on its way: the path goes on from each, so it has
@@ -57,9 +61,12 @@ NEPHROID_CONST uint kLandings = 2u;
 
 /// Branches that may be followed by lists of cells.
 NEPHROID_CONST uint kMostBranches = 16u;
+/// Cells between photons that are followed first: halved again and again, each time a list.
+NEPHROID_CONST uint kMostSpacing = 4u;
+NEPHROID_CONST uint kListsEach = 3u;
 /// The list of cells whose weaker way is followed, after those of the branches.
-NEPHROID_CONST uint kWeakerList = kMostBranches;
-NEPHROID_CONST uint kCellLists = kMostBranches + 1u;
+NEPHROID_CONST uint kWeakerList = kMostBranches * kListsEach;
+NEPHROID_CONST uint kCellLists = kWeakerList + 1u;
 /// What a pass is: the last of those of branches; one that follows the weaker way.
 NEPHROID_CONST uint kRoleIsLast = 1u;
 NEPHROID_CONST uint kRoleIsWeaker = 2u;
@@ -102,6 +109,14 @@ struct PictureView {
   float extent;  // the picture's longer side: at distance 1, or in m if orthographic
 };
 
+/// Bounds of what casts caustics, and of everything, m.
+struct Surroundings {
+  vec3 generator_lower;
+  vec3 generator_upper;
+  vec3 scene_lower;
+  vec3 scene_upper;
+};
+
 struct TransportPush {
   uint grid;    // cells along a side of a view's grid
   uint light;   // in the table of lights
@@ -115,15 +130,18 @@ struct TransportPush {
   uint receiver_iterations;
   float first_guess;    // m; of receiver_search.glsl
   uint role;            // kRole…
+  uint list;            // that is made or gone through
+  uint spacing;         // cells between photons of that list
+  uint squares_across;  // of PhotonBuffer::squares; 0: they are not asked for
   float wavelength_nm;  // of the band; 0: nothing disperses
   vec3 band_weight;     // of the light's flux
   uint band;
   uint seed;             // of microfacets
-  vec3 generator_lower;  // bounds of what casts caustics, and of everything
-  vec3 generator_upper;
-  vec3 scene_lower;
-  vec3 scene_upper;
   float specular_alpha;  // an interface of a larger one is a diffuse lobe
+  uint tree_nodes;       // TriangleTree::Walk
+  uint tree_orders;
+  vec3 tree_grid_lower;
+  float tree_grid_scale;
 };
 
 NEPHROID_NAMESPACE_END

@@ -10,6 +10,7 @@
 #include "techniques/caustic_map/emission_views.h"
 #include "techniques/caustic_map/photon_ledger.h"
 #include "techniques/caustic_map/transport.h"
+#include "trace/box_tree_builder.h"
 
 namespace nephroid::testing {
 
@@ -37,7 +38,7 @@ struct Flown {
 
 class LightRig {
  public:
-  /// @param grid  of the emission, and texels along a side of all pictures
+  /// @param grid   of the emission, and texels along a side of all pictures
   LightRig(gpu::Device& device, const SceneData& scene, std::uint32_t grid = 128, std::uint32_t layers = 4)
       : device_(device),
         scene_(scene),
@@ -51,6 +52,7 @@ class LightRig {
         inner_(device, buffers_, grid, viewCount(), layers),
         outer_(device, buffers_, grid, static_cast<std::uint32_t>(view_.views.size()), 2),
         photons_(device, grid * grid),
+        tree_(device, recorder_, scene, buildBoxTree),
         transport_(device, buffers_),
         cell_lists_(transport_.makeCellLists(grid)) {
     std::vector<std::size_t> all, generators, receivers;
@@ -88,6 +90,14 @@ class LightRig {
     return read();
   }
 
+  /// Cells that the last flight by lists followed in a branch.
+  std::uint32_t followed(std::uint32_t branch) {
+    const std::vector<CellListHead> heads = gpu::readBackAs<CellListHead>(device_, cell_lists_.cells);
+    std::uint32_t sum = 0;
+    for (std::uint32_t k = 0; k < kListsEach; ++k) sum += heads[branch * kListsEach + k].count;
+    return sum;
+  }
+
   /// Of all views and of branches 0 to `last`, and of the weaker way if that is to be followed.
   Ledger ledger(std::uint32_t last, TransportSettings settings = {}) {
     PhotonLedger ledger(device_, grid_ * grid_, viewCount() * (last + 2));
@@ -115,7 +125,7 @@ class LightRig {
   }
 
   LightPictures pictures() const {
-    return {views_, hull_.bounds(), scene_.bounds(), view_.views, first_, inner_, outer_};
+    return {views_, hull_.bounds(), scene_.bounds(), view_.views, first_, inner_, outer_, &tree_};
   }
   const std::vector<ViewRecord>& views() const { return views_; }
   std::uint32_t viewCount() const { return static_cast<std::uint32_t>(views_.size()); }
@@ -175,6 +185,7 @@ class LightRig {
   SceneBuffers buffers_;
   SurfaceLayers first_, inner_, outer_;
   PhotonBuffer photons_;
+  TriangleTree tree_;
   Transport transport_;
   CellLists cell_lists_;
   gpu::Buffer lights_;

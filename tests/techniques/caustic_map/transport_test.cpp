@@ -317,5 +317,95 @@ TEST_F(TransportTest, ForksAreTakenUpInsideOfWhatTheyWereInsideOf) {
   EXPECT_GT(expectSameByLists(device(), scene)[3], 10);
 }
 
+/// What interpolation makes of photons that are followed too.
+struct Interpolated {
+  double worst = 0.0, mean = 0.0;  ///< distance between places, over the mean distance of neighbours
+  double flux = 0.0;               ///< of all, over that of those that are followed
+  double followed = 0.0;           ///< share of cells
+  int valid = 0, torn = 0;         ///< photons; those that only one of both has, or that took another way
+};
+Interpolated interpolate(LightRig& rig, std::uint32_t branch, std::uint32_t spacing) {
+  const Flown all = rig.flyListed({.branch = branch});
+  const double cells = rig.followed(branch);
+  const Flown some = rig.flyListed({.branch = branch, .spacing = spacing});
+  Interpolated result{.flux = some.fluxOf(kOutcomeDeposited).y / all.fluxOf(kOutcomeDeposited).y,
+                      .followed = rig.followed(branch) / cells};
+  double apart = 0.0;
+  for (std::size_t i = 0; i < all.photons.size(); ++i) {
+    const Photon &a = all.photons[i], &b = some.photons[i];
+    const bool is_valid = hasPhotonFlag(a, kPhotonValid);
+    if (is_valid != hasPhotonFlag(b, kPhotonValid) || (is_valid && a.chain != b.chain)) ++result.torn;
+    if (!is_valid || !hasPhotonFlag(b, kPhotonValid)) continue;
+    EXPECT_EQ(b.index, i);
+    ++result.valid;
+    const double off = length(dvec3(a.position) - dvec3(b.position));
+    result.worst = std::max(result.worst, off), result.mean += off;
+    const Photon& next = all.photons[i + 1 < all.photons.size() ? i + 1 : i];
+    if (hasPhotonFlag(next, kPhotonValid) && next.chain == a.chain) apart += length(dvec3(next.position - a.position));
+  }
+  result.worst /= apart / result.valid, result.mean /= apart;
+  return result;
+}
+
+TEST_F(TransportTest, InterpolatedPhotonsEndWhereFollowedOnesDo) {
+  SceneData scene = test::makeBallScene(test::makeGlass(1.5F), 512);
+  scene.lights.push_back(test::makeSun(vec3(0.2F, -1, 0.1F), vec3(1)));
+  LightRig rig(device(), scene, 256);
+  for (const std::uint32_t branch : {0U, 1U, 3U})
+    for (const std::uint32_t spacing : {2U, 4U}) {
+      const Interpolated found = interpolate(rig, branch, spacing);
+      SCOPED_TRACE(::testing::Message() << "branch " << branch << " spacing " << spacing);
+      EXPECT_LT(found.worst, 0.05);
+      EXPECT_LT(found.mean, 0.005);
+      EXPECT_NEAR(found.flux, 1.0, 1e-3);
+      EXPECT_EQ(found.torn, 0);
+      EXPECT_LT(found.followed, 0.5);
+      EXPECT_GT(found.valid, 1000);
+    }
+}
+
+TEST_F(TransportTest, NothingIsInterpolatedAcrossWhatBlocksLight) {
+  SceneData scene = test::makeBallScene(test::makeGlass(1.5F), 512);
+  // A cell or two wide, some between those that are followed first.
+  for (const double z : {-0.4, -0.292, -0.184, -0.076})
+    test::addObject(scene, makeBox("bar", dvec3(-2, 2.5, z), dvec3(2, 2.52, z + 0.012)), test::makeDiffuse(vec3(0.0F)));
+  scene.lights.push_back(test::makeSun(vec3(0, -1, 0), vec3(1)));
+  LightRig rig(device(), scene, 256);
+  const Interpolated found = interpolate(rig, 1, 4);
+  EXPECT_EQ(found.torn, 0);
+  EXPECT_LT(found.followed, 0.6);
+}
+
+TEST_F(TransportTest, WhatVariesByTexturesIsFollowed) {
+  SceneData scene = test::makeBallScene(test::makeGlass(1.5F), 512);
+  for (Mesh& mesh : scene.meshes) mesh.colors.assign(mesh.positions.size(), vec4(1.0F));
+  scene.lights.push_back(test::makeSun(vec3(0.2F, -1, 0.1F), vec3(1)));
+  LightRig rig(device(), scene);
+  const Interpolated found = interpolate(rig, 1, 4);
+  EXPECT_EQ(found.followed, 1.0);
+  EXPECT_EQ(found.torn, 0);
+}
+
+TEST_F(TransportTest, PicturesLeadWhereTheTreeDoes) {
+  SceneData ball = test::makeBallScene(test::makeGlass(1.5F), 256);
+  ball.lights.push_back(test::makeSun(vec3(0.2F, -1, 0.1F), vec3(1)));
+  const SceneData slab = makeSlab(normalize(vec3(0.5F, -1, 0.2F)));
+  for (const SceneData* scene : {static_cast<const SceneData*>(&ball), &slab}) {
+    LightRig rig(device(), *scene, 256);
+    for (const std::uint32_t branch : {0U, 1U, 2U}) {
+      const Flown tree = rig.fly({.branch = branch}), pictures = rig.fly({.branch = branch, .search = Search::kPlanes});
+      int same = 0, all = 0;
+      for (std::size_t i = 0; i < tree.photons.size(); ++i) {
+        const Photon &a = tree.photons[i], &b = pictures.photons[i];
+        if (!hasPhotonFlag(a, kPhotonValid) && !hasPhotonFlag(b, kPhotonValid)) continue;
+        ++all;
+        same += a.chain == b.chain && length(a.position - b.position) < 1e-4F ? 1 : 0;
+      }
+      EXPECT_GE(same, 0.999 * all) << branch;
+      EXPECT_GT(all, branch == 1 ? 10000 : -1);
+    }
+  }
+}
+
 }  // namespace
 }  // namespace nephroid
