@@ -113,18 +113,18 @@ struct Span {
 };
 
 /// Does light from a direction that falls on the places fall on the texel's surface?
-bool isLit(TexelSurface s, Span span, vec3 direction) {
-  bool is_on = liesOn(s, span.first, span.reach) || liesOn(s, span.third, span.reach);
-  return is_on && dot(direction, s.lit_normal) < 0.0;
+bool isLit(ivec2 texel, uint view, uint layer, Span span, vec3 direction) {
+  vec4 surface = texelFetch(surfaces, ivec3(texel, view * push.layer_count + layer), 0);
+  return isLitAt(surface, kViewsShare ? span.forward : views[0].forward, span.first, span.third, span.reach, direction);
 }
 
 /// The first layer of a texel that is lit; kFluxLayers: none.
 uint litLayer(ivec2 texel, uint view, Span span, vec3 direction) {
   uint layer = 0u;
-  bool is_lit = isLit(fetchTexel(texel, view, 0u, span.forward), span, direction);
+  bool is_lit = isLit(texel, view, 0u, span, direction);
   [[unroll]] for (uint k = 1u; k < kFluxLayers; ++k)
     if (!is_lit) {
-      is_lit = isLit(fetchTexel(texel, view, k, span.forward), span, direction);
+      is_lit = isLit(texel, view, k, span, direction);
       layer = k;
     }
   return is_lit ? layer : kFluxLayers;
@@ -144,7 +144,7 @@ uint searchViewFaced(vec3 place, vec3 direction) {
       TexelSurface s = fetchTexel(ivec2(on.texels), v, k, span.forward);
       float off = abs(dot(s.lit_normal, place - s.position));
       float facing = s.cos_view * (1.0 - off / span.reach);
-      if (!isLit(s, span, direction) || facing <= most) continue;
+      if (facing <= most || !isLit(ivec2(on.texels), v, k, span, direction)) continue;
       most = facing;
       faced = v;
     }

@@ -61,6 +61,24 @@ TexelSurface describeTexel(vec4 texel, vec3 forward) {
 
 TexelSurface describeTexel(vec4 texel) { return describeTexel(texel, views[0].forward); }
 
+/// Along a packed unit vector, between 0.57 and 1 long: without the root that its length takes.
+vec3 unpackDirection(uint packed_vector) {
+  vec2 p = unpackSnorm2x16(packed_vector);
+  float z = 1.0 - abs(p.x) - abs(p.y), fold = max(-z, 0.0);
+  return vec3(p - vec2(p.x >= 0.0 ? fold : -fold, p.y >= 0.0 ? fold : -fold), z);
+}
+
+/// Whether a texel's surface is lit by light of a direction that falls on it at either of two places: lies it on the
+/// surface's plane, but for what that bends over `reach`, and comes it from the side that the view sees?
+/// @param texel    as describeTexel
+/// @param forward  of the view, if it is parallel
+bool isLitAt(vec4 texel, vec3 forward, vec3 first, vec3 second, float reach, vec3 direction) {
+  vec3 normal = unpackDirection(floatBitsToUint(texel.w));
+  vec3 along = views[0].is_orthographic != 0u ? forward : texel.xyz - views[0].eye;
+  float off = min(abs(dot(normal, first - texel.xyz)), abs(dot(normal, second - texel.xyz)));
+  return off * off <= reach * reach * dot(normal, normal) && dot(normal, along) * dot(normal, direction) > 0.0;
+}
+
 /// Size of a texel across the view, m.
 float texelSize(float w, vec2 size) {
   return 2.0 * max(length(views[0].right) / size.x, length(views[0].up) / size.y) * w;
