@@ -8,6 +8,7 @@
 
 #include "closed_form/ball.h"
 #include "closed_form/hollow.h"
+#include "closed_form/profile.h"
 #include "closed_form/ring.h"
 #include "closed_form/slab.h"
 #include "closed_form/wave.h"

@@ -15,6 +15,7 @@
 #include "closed_form/ball.h"
 #include "closed_form/blur.h"
 #include "closed_form/mirrors.h"
+#include "closed_form/profile.h"
 #include "closed_form/ring.h"
 #include "closed_form/wave.h"
 #include "core/image/image_io.h"

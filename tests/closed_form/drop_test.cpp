@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "closed_form/optics.h"
 #include "core/spectrum.h"
 
 namespace nephroid::closed_form {

@@ -20,10 +20,10 @@
 
 #include <memory>
 
+#include "closed_form/optics.h"
+#include "closed_form/plane_picture.h"
 #include "scene/builtin/setting.h"
 #include "scene/builtin/shapes.h"
-#include "support/closed_form.h"
-#include "support/closed_form_render.h"
 
 namespace nephroid::closed_form {
 

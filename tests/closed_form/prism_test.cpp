@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include "closed_form/optics.h"
+#include "closed_form/profile.h"
 #include "core/spectrum.h"
 
 namespace nephroid::closed_form {

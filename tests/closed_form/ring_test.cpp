@@ -4,6 +4,9 @@
 
 #include <algorithm>
 
+#include "closed_form/optics.h"
+#include "closed_form/profile.h"
+
 namespace nephroid::closed_form {
 namespace {
 

@@ -1,4 +1,4 @@
-// What the reference renderer says about an irradiance that a formula also knows.
+// What a technique says about an irradiance that a formula also knows.
 #pragma once
 
 #include <cstdint>

@@ -1,4 +1,4 @@
-#include "support/closed_form_render.h"
+#include "closed_form/plane_picture.h"
 
 #include <algorithm>
 #include <cmath>
