@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "closed_form/optics.h"
+#include "closed_form/profile.h"
 #include "scene/builtin/setting.h"
 #include "scene/builtin/shapes.h"
 
@@ -56,6 +57,17 @@ PlaneView blurView(const BlurCase& c) {
   view.columns = 512;
   view.rows = static_cast<int>((c.length - 2.1 * blurRadius(c)) / view.pixelSize());
   return view;
+}
+
+std::optional<double> measureEdgeWidth(const BlurCase& c, const PlanePicture& picture) {
+  constexpr std::size_t kBin = 8;
+  const std::vector<double> columns = picture.columnMeans();
+  std::vector<double> edge(columns.size() / kBin, 0.0);
+  for (std::size_t i = 0; i < edge.size() * kBin; ++i) edge[i / kBin] += columns[i] / double{kBin};
+  const double plateau = 1.0 - fresnelReflectance(1.0, 1.0, c.ior);
+  const std::optional<double> low = findCrossing(edge, 0.1 * plateau), high = findCrossing(edge, 0.9 * plateau);
+  if (!low || !high) return std::nullopt;
+  return (*high - *low) * double{kBin} * picture.view.pixelSize() / blurRadius(c);
 }
 
 }  // namespace nephroid::closed_form

@@ -16,6 +16,7 @@
 #pragma once
 
 #include <cstddef>
+#include <optional>
 #include <vector>
 
 #include "closed_form/plane_picture.h"
@@ -41,5 +42,9 @@ SceneData makeBlurScene(const BlurCase& c);
 
 /// |x| <= 1.5 ρ, along the edge as far as the blur of its ends does not reach.
 PlaneView blurView(const BlurCase& c);
+
+/// The width from 10 to 90 % of the plateau in a picture of `blurView`, in units of ρ; nothing where there is no edge.
+/// Over bins of 8 pixels, so that single photons do not decide where a level is crossed.
+std::optional<double> measureEdgeWidth(const BlurCase& c, const PlanePicture& picture);
 
 }  // namespace nephroid::closed_form

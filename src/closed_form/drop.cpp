@@ -1,8 +1,10 @@
 #include "closed_form/drop.h"
 
+#include <algorithm>
 #include <cmath>
 
 #include "closed_form/optics.h"
+#include "core/spectrum.h"
 #include "scene/builtin/shapes.h"
 
 namespace nephroid::closed_form {
@@ -69,6 +71,28 @@ std::vector<dvec3> angularProfile(const PlanePicture& picture, double lower, dou
     }
   }
   return profile;
+}
+
+std::vector<double> bowErrors_deg(const DropCase& c, const PlanePicture& picture) {
+  constexpr double kBin_deg = 0.02, kLower_deg = 40.0, kUpper_deg = 44.0;
+  const std::vector<Band> bands = makeBands(kBowBands);
+  const auto bins = static_cast<std::size_t>(std::lround((kUpper_deg - kLower_deg) / kBin_deg));
+  const std::vector<dvec3> profile = angularProfile(picture, radiansD(kLower_deg), radiansD(kUpper_deg), bins);
+  const glm::dmat3 bands_from_rgb =
+      glm::inverse(glm::dmat3(dvec3(bands[0].weight), dvec3(bands[1].weight), dvec3(bands[2].weight)));
+  std::vector<double> errors;
+  for (int b = 0; b < kBowBands; ++b) {
+    std::vector<double> flux;
+    for (const dvec3& rgb : profile) flux.push_back((bands_from_rgb * rgb)[b]);
+    const double densest = *std::max_element(flux.begin(), flux.end());
+    // Light that the drop's front mirrors comes to all angles, thinly.
+    std::size_t edge = bins;
+    while (edge > 0 && flux[edge - 1] < 0.3 * densest) --edge;
+    const double ior =
+        cauchyIndex(c.ior, c.abbe, static_cast<double>(bands[static_cast<std::size_t>(b)].wavelength_nm));
+    errors.push_back(std::abs(kLower_deg + kBin_deg * static_cast<double>(edge) - degreesD(bowAngle(c, ior))));
+  }
+  return errors;
 }
 
 }  // namespace nephroid::closed_form

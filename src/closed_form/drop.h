@@ -41,4 +41,11 @@ SceneData makeDropScene(const DropCase& c);
 /// RGB flux by angle from the axis, in equal bins over [lower, upper], rad.
 std::vector<dvec3> angularProfile(const PlanePicture& picture, double lower, double upper, std::size_t bins);
 
+/// How far the edge of each band's bow is from where its index puts it, degrees, to 0.02: as many as there are bands.
+/// @param picture  of `dropView` with that many bands, each of one wavelength
+std::vector<double> bowErrors_deg(const DropCase& c, const PlanePicture& picture);
+
+/// Bands that `bowErrors_deg` tells apart: colours are sums over bands, and three can be told from three channels.
+inline constexpr int kBowBands = 3;
+
 }  // namespace nephroid::closed_form

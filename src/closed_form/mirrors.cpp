@@ -90,4 +90,17 @@ SceneData makeSphericalMirrorScene(const SphericalMirrorCase& c, int rows, int s
   return scene;
 }
 
+double measureCrossing(double h, const PlaneRenderer& render) {
+  constexpr double kPlanes[2] = {0.30, 0.38};
+  double radii[2];
+  for (int i = 0; i < 2; ++i) {
+    SphericalMirrorCase c{.h0 = h - 0.002, .h1 = h + 0.002, .plane = kPlanes[i], .receiver_radius = 0.2};
+    // Receivers wider than the zone would shade it: as wide as the light on them, and some.
+    c.receiver_radius = std::min(1.2 * sphericalLanding(c, h), 0.95 * h);
+    const PlaneView view = receiverView(c.plane, 2.0 * c.receiver_radius, 512);
+    radii[i] = render(makeSphericalMirrorScene(c, 8, 1024), view, {}).meanRadius();
+  }
+  return kPlanes[0] + (kPlanes[1] - kPlanes[0]) * radii[0] / (radii[0] - radii[1]);
+}
+
 }  // namespace nephroid::closed_form

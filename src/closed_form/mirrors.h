@@ -52,4 +52,8 @@ std::vector<double> sphericalIrradiance(const SphericalMirrorCase& c, std::size_
 /// A perfect mirror: the zone of the sphere about (0, R, 0), facing up, and a round receiver above it.
 SceneData makeSphericalMirrorScene(const SphericalMirrorCase& c, int rows, int segments);
 
+/// Where the light of a narrow zone at h crosses the axis of a mirror of radius 1, above its lowest point: a straight
+/// line through its mean radii on two planes before the crossing.
+double measureCrossing(double h, const PlaneRenderer& render);
+
 }  // namespace nephroid::closed_form

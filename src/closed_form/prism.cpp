@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "closed_form/optics.h"
+#include "core/spectrum.h"
 #include "scene/load.h"
 
 namespace nephroid::closed_form {
@@ -64,15 +65,14 @@ std::vector<std::pair<int, int>> findBeams(const PlanePicture& picture) {
   return beams;
 }
 
-std::vector<double> measureDeviations(const PrismCase& c, double expected_elevation, std::uint64_t photons,
-                                      const std::vector<std::string>& settings) {
+std::vector<double> measureDeviations(const PrismCase& c, double expected_elevation, const PlaneRenderer& render,
+                                      const std::vector<std::string>& parameters) {
   constexpr double kLow = 0.3, kHigh = 0.6;
   std::vector<double> centres[2];
   for (const bool high : {false, true}) {
     const double height = high ? kHigh : kLow;
-    const PlanePicture picture = renderPlane(
-        makePrismScene(c, height), prismView(expected_elevation, height, 0.25 * height), photons, 1, settings);
-    if (worstResidual(picture.ledgers) > 1e-5) return {};
+    const PlanePicture picture =
+        render(makePrismScene(c, height), prismView(expected_elevation, height, 0.25 * height), parameters);
     for (const auto& [first, last] : findBeams(picture))
       centres[high ? 1 : 0].push_back(beamCentre(picture, first, last));
   }
@@ -81,6 +81,62 @@ std::vector<double> measureDeviations(const PrismCase& c, double expected_elevat
   for (std::size_t i = 0; i < centres[0].size(); ++i)
     deviations.push_back(std::atan2(kHigh - kLow, centres[1][i] - centres[0][i]) - radiansD(c.sun_elevation_deg));
   return deviations;
+}
+
+PrismCase FanCase::prism() const {
+  PrismCase c{.ior = 1.62, .abbe = 30.0};
+  c.incidence_deg = 0.5 * (c.apex_deg + degreesD(prismMinimumDeviation(radiansD(c.apex_deg), c.ior)));
+  return c;
+}
+
+SceneData FanCase::scene() const { return makePrismScene(prism(), height, 40.0); }
+
+PlaneView FanCase::view() const {
+  const PrismCase c = prism();
+  return prismView(radiansD(c.sun_elevation_deg) + prismMinimumDeviation(radiansD(c.apex_deg), c.ior), height, width);
+}
+
+std::vector<dvec3> fanIrradiance(const FanCase& fan) {
+  constexpr int kWavelengths = 20000;
+  const PrismCase c = fan.prism();
+  const double apex = radiansD(c.apex_deg), incidence = radiansD(c.incidence_deg);
+  const double centre = static_cast<double>(fan.view().centre.x);
+  std::vector<dvec3> irradiance(fan.bins, dvec3(0.0));
+  for (int i = 0; i < kWavelengths; ++i) {
+    const float nm = kWavelengthMin_nm + (kWavelengthMax_nm - kWavelengthMin_nm) * (static_cast<float>(i) + 0.5F) /
+                                             static_cast<float>(kWavelengths);
+    const double ior = cauchyIndex(c.ior, c.abbe, static_cast<double>(nm));
+    const double inside = std::asin(std::sin(incidence) / ior);
+    const double kept = (1.0 - fresnelReflectance(std::cos(incidence), 1.0, ior)) *
+                        (1.0 - fresnelReflectance(std::cos(apex - inside), ior, 1.0));
+    const double elevation = radiansD(c.sun_elevation_deg) + prismDeviation(apex, incidence, ior);
+    const double x = fan.height / std::tan(elevation) - centre;
+    const double bin = (x / fan.width + 0.5) * static_cast<double>(fan.bins);
+    if (bin >= 0.0 && bin < static_cast<double>(fan.bins))
+      irradiance[static_cast<std::size_t>(bin)] += kept * dvec3(wavelengthRgb(nm));
+  }
+  return irradiance;
+}
+
+std::vector<dvec3> binColumns(const PlanePicture& picture, std::size_t bins) {
+  std::vector<dvec3> sums(bins, dvec3(0.0));
+  for (int k = 0; k < 3; ++k) {
+    const std::vector<double> means = picture.columnMeans(k);
+    for (std::size_t x = 0; x < means.size(); ++x) sums[x * bins / means.size()][k] += means[x];
+  }
+  return sums;
+}
+
+double relativeColourL1(const std::vector<dvec3>& measured, const std::vector<dvec3>& predicted) {
+  double sum_measured = 0.0, sum_predicted = 0.0, difference = 0.0, size = 0.0;
+  for (const dvec3& v : measured) sum_measured += v.x + v.y + v.z;
+  for (const dvec3& v : predicted) sum_predicted += v.x + v.y + v.z;
+  for (std::size_t i = 0; i < measured.size(); ++i) {
+    const dvec3 p = predicted[i] / sum_predicted, d = glm::abs(measured[i] / sum_measured - p);
+    difference += d.x + d.y + d.z;
+    size += std::abs(p.x) + std::abs(p.y) + std::abs(p.z);
+  }
+  return difference / size;
 }
 
 }  // namespace nephroid::closed_form

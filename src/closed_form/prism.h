@@ -15,7 +15,7 @@
 // and the way by which its centre moves per height is the cotangent of its elevation.
 #pragma once
 
-#include <cstdint>
+#include <cstddef>
 #include <string>
 #include <utility>
 #include <vector>
@@ -49,7 +49,26 @@ double beamCentre(const PlanePicture& picture, int first_column, int last_column
 std::vector<std::pair<int, int>> findBeams(const PlanePicture& picture);
 
 /// Deviation of each beam that the floor shows, rad, from the left. @param expected_elevation where to look
-std::vector<double> measureDeviations(const PrismCase& c, double expected_elevation, std::uint64_t photons,
-                                      const std::vector<std::string>& settings = {});
+/// @return  nothing where the two heights show different numbers of beams
+std::vector<double> measureDeviations(const PrismCase& c, double expected_elevation, const PlaneRenderer& render,
+                                      const std::vector<std::string>& parameters = {});
+
+/// White light through flint glass (V = 30) in the minimum of the d line, caught so far below that the slit and the
+/// places where light leaves the prism, a few millimetres, are lost in a fan of metres: light of wavelength λ lands
+/// where a line of its elevation does.
+struct FanCase {
+  double height = 30.0, width = 4.0;  ///< of the prism above the floor; of the strip of floor that is seen, m
+  std::size_t bins = 64;
+
+  PrismCase prism() const;
+  SceneData scene() const;
+  PlaneView view() const;
+};
+/// RGB by place along the floor, any scale: Σ over wavelengths of colour times what both faces let through.
+std::vector<dvec3> fanIrradiance(const FanCase& c);
+/// RGB along the floor, in equal bins over the view.
+std::vector<dvec3> binColumns(const PlanePicture& picture, std::size_t bins);
+/// Σ|E − E*| / Σ|E*| over bins and channels, both scaled to the same sum.
+double relativeColourL1(const std::vector<dvec3>& measured, const std::vector<dvec3>& predicted);
 
 }  // namespace nephroid::closed_form

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "closed_form/optics.h"
@@ -65,6 +66,56 @@ PlaneView ringView(const RingCase& c, int pixels) {
   view.width = 2.0 * c.inner_radius;
   view.columns = view.rows = pixels;
   return view;
+}
+
+std::vector<double> sumSquares(const Image& image) {
+  constexpr int kSide = 8;
+  const int size = image.width / kSide;
+  std::vector<double> sums;
+  for (int row = 0; row < size; ++row) {
+    for (int column = 0; column < size; ++column) {
+      const double far_x = std::abs(column + 0.5 - 0.5 * size) + 0.5, far_y = std::abs(row + 0.5 - 0.5 * size) + 0.5;
+      if (std::hypot(far_x, far_y) > 0.5 * size) continue;
+      sums.push_back(0.0);
+      for (int y = kSide * row; y < kSide * (row + 1); ++y)
+        for (int x = kSide * column; x < kSide * (column + 1); ++x)
+          sums.back() += static_cast<double>(image.at(x, y)[0]);
+    }
+  }
+  return sums;
+}
+
+std::vector<double> axisProfile(const Image& image, int rows) {
+  std::vector<double> profile(static_cast<std::size_t>(image.width), 0.0);
+  for (int y = (image.height - rows) / 2; y < (image.height + rows) / 2; ++y)
+    for (int x = 0; x < image.width; ++x)
+      profile[static_cast<std::size_t>(x)] += static_cast<double>(image.at(x, y)[0]) / rows;
+  return profile;
+}
+
+double nephroidDistance(const RingCase& c, const PlanePicture& picture) {
+  const Image& image = picture.irradiance;
+  const double pixel = picture.view.pixelSize();
+  const int first_row = image.height / 2 + 92;
+  double worst = 0.0;
+  for (int column = 90; column <= 150; column += 2) {
+    int brightest = first_row;
+    for (int row = first_row; row < image.height; ++row)
+      if (image.at(column, row)[0] > image.at(column, brightest)[0]) brightest = row;
+    const dvec2 found((column + 0.5) * pixel - c.inner_radius, (brightest + 0.5) * pixel - c.inner_radius);
+    double nearest = c.inner_radius;
+    for (int i = 0; i <= 20'000; ++i)
+      nearest = std::min(nearest, glm::length(found - nephroidPoint(c.inner_radius, 0.5 * kPiD * i / 20'000)));
+    worst = std::max(worst, nearest);
+  }
+  return worst / pixel;
+}
+
+double cuspPosition(const RingCase& c, const PlanePicture& picture) {
+  const double pixel = picture.view.pixelSize() / c.inner_radius;
+  const std::vector<double> profile = axisProfile(picture.irradiance, 2);
+  const auto peak = std::max_element(profile.begin(), profile.end()) - profile.begin();
+  return (static_cast<double>(peak) + 0.5) * pixel - 1.0 + 0.75 * std::pow(pixel, 2.0 / 3.0);
 }
 
 }  // namespace nephroid::closed_form

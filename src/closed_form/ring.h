@@ -25,6 +25,8 @@
 // reflection's light comes together farther on. Patches (φ, y) are mapped to the floor and gathered in pixels.
 #pragma once
 
+#include <vector>
+
 #include "closed_form/plane_picture.h"
 #include "core/image/image.h"
 
@@ -49,6 +51,25 @@ RingLanding traceRing(const RingCase& c, double phi, double y);
 Image ringIrradiance(const RingCase& c, int pixels);
 
 SceneData makeRingScene(const RingCase& c, int segments);
+
+/// Sums over squares of 8 × 8 pixels that lie inside the circle: the corners get light from the ring's outside too.
+std::vector<double> sumSquares(const Image& image);
+
+/// Means over an even number of rows about the axis.
+std::vector<double> axisProfile(const Image& image, int rows);
+
+/// How far the brightest pixels of some columns are from the nephroid: the worst, in pixels.
+///
+/// Down each of these columns the brightest pixel lies on the curve: inside there are more rays, at the fold infinitely
+/// many. The columns cross the upper branch, φ from 45 to 75 degrees, which has |z| > a/(2√2); the cusp's light is
+/// below. @param picture  of ringView(c, 512)
+double nephroidDistance(const RingCase& c, const PlanePicture& picture);
+
+/// x of the cusp, over the inner radius. By the formula it is −1/2.
+///
+/// The two rows about the axis are a strip |z| <= w of one pixel. Near the cusp N(φ)/a = (−1/2 − 3φ²/4, φ³): the strip
+/// holds both folds up to φ = (w/a)^(1/3) and is brightest where they leave it, at x/a = −1/2 − (3/4)(w/a)^(2/3).
+double cuspPosition(const RingCase& c, const PlanePicture& picture);
 
 /// The inside of the ring, seen from below its rim.
 PlaneView ringView(const RingCase& c, int pixels);

@@ -96,7 +96,9 @@ inline FurnaceResult burn(const SceneData& scene, std::uint64_t samples, int siz
   settings.samples = samples;
   settings.photons = samples * 4096;
   settings.seed = 1;
-  const RenderResult result = renderLayers(scene, scene.cameras[0], settings);
+  const Technique& reference = findTechnique("reference");
+  settings.params = ParamSet(reference.params);
+  const RenderResult result = reference.render(scene, scene.cameras[0], settings, nullptr, nullptr);
   const Image& image = *result.image.find(layer);
   FurnaceResult out{0.0, 1e30, -1e30};
   for (const float value : image.pixels) {
