@@ -146,5 +146,58 @@ TEST(BenchRace, RefusesOptionsThatWouldDoNothing) {
     EXPECT_EQ(runNephroid(arguments).exit_code, 2) << arguments.back();
 }
 
+/// The cheapest closed form: no device, few photons.
+std::vector<std::string> closedFormArguments(std::vector<std::string> more) {
+  std::vector<std::string> arguments{"bench",       "--closed-form", "slab-coloured-45",
+                                     "--technique", "reference",     "--photons",
+                                     "200k",        "--set",         "estimator=light"};
+  arguments.insert(arguments.end(), more.begin(), more.end());
+  return arguments;
+}
+
+TEST(BenchClosedForm, HoldsTheReferenceAgainstTheFormulaAsJson) {
+  const ProcessResult result = runNephroid(closedFormArguments({"--set", "estimator=path", "--json"}));
+  ASSERT_EQ(result.exit_code, 0) << result.err;
+  const nlohmann::json json = nlohmann::json::parse(result.out);
+  ASSERT_EQ(json["results"].size(), 6U);
+  const std::vector<std::string> figures{"red", "green", "blue", "red", "green", "blue"};
+  for (std::size_t i = 0; i < figures.size(); ++i) {
+    const nlohmann::json& row = json["results"][i];
+    EXPECT_EQ(row["closed_form"], "slab-coloured-45");
+    EXPECT_EQ(row["figure"], figures[i]);
+    EXPECT_EQ(row["unit"], "share");
+    EXPECT_EQ(row["technique"], "reference");
+    EXPECT_EQ(row["tolerance"], 0.01);
+    if (i < 3) {
+      EXPECT_EQ(row["estimator"], "light");
+      EXPECT_GT(row["error"].get<double>(), 0.0);
+      EXPECT_LT(row["error"].get<double>(), 0.01);
+      EXPECT_EQ(row["holds"], true);
+    } else {  // no path from the eye meets a sun without a size: there is no light
+      EXPECT_EQ(row["estimator"], "path");
+      EXPECT_TRUE(row["error"].is_null());
+      EXPECT_EQ(row["holds"], false);
+    }
+  }
+}
+
+TEST(BenchClosedForm, SaysWhatDoesNotHoldAndEndsWell) {
+  // One bounce is what a photon needs to enter glass: nothing comes out.
+  const ProcessResult result = runNephroid(closedFormArguments({"--set", "max-bounces=1"}));
+  ASSERT_EQ(result.exit_code, 0) << result.err;
+  EXPECT_THAT(result.out,
+              HasSubstr("\nclosed form      figure     technique                  error  tolerance  holds\n"));
+  EXPECT_THAT(result.out, HasSubstr("\nslab-coloured-45 red        reference light                -        1 %  NO\n"));
+}
+
+TEST(BenchClosedForm, RefusesWhatItDoesNotKnow) {
+  const ProcessResult form = runNephroid({"bench", "--closed-form", "builtin:slab"});
+  EXPECT_EQ(form.exit_code, 2);
+  EXPECT_THAT(form.err, HasSubstr("no closed form 'builtin:slab'; there are: slab-0, "));
+  for (const std::vector<std::string>& more : std::vector<std::vector<std::string>>{
+           {"--size", "8x8"}, {"--seconds", "1"}, {"--repeats", "2"}, {"--race"}, {"--error"}, {"--set", "none=1"}})
+    EXPECT_EQ(runNephroid(closedFormArguments(more)).exit_code, 2) << more[0];
+}
+
 }  // namespace
 }  // namespace nephroid::test

@@ -2,6 +2,9 @@
 
 #include <gtest/gtest.h>
 
+#include "closed_form/optics.h"
+#include "closed_form/profile.h"
+
 namespace nephroid::closed_form {
 namespace {
 

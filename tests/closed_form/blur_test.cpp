@@ -2,18 +2,14 @@
 
 #include <gtest/gtest.h>
 
+#include "closed_form/optics.h"
+#include "closed_form/profile.h"
+
 namespace nephroid::closed_form {
 namespace {
 
 // About half of the photons land in the view: 2^21, some 6 000 in a column of full light, each with an error of 1.3 %.
 constexpr std::uint64_t kPhotons = std::uint64_t{1} << 22;
-
-/// Sums neighbours, so that single photons do not decide where a level is crossed.
-std::vector<double> smooth(const std::vector<double>& values, std::size_t count) {
-  std::vector<double> means(values.size() / count, 0.0);
-  for (std::size_t i = 0; i < means.size() * count; ++i) means[i / count] += values[i] / static_cast<double>(count);
-  return means;
-}
 
 class FiniteSun : public ::testing::TestWithParam<double> {};
 
@@ -22,16 +18,12 @@ TEST_P(FiniteSun, BlursAnEdgeByTheDiscsEdgeSpreadToTwoPercent) {
   const PlanePicture picture = renderPlane(makeBlurScene(c), blurView(c), kPhotons);
   const std::vector<double> measured = picture.columnMeans(), predicted = blurIrradiance(c, 512);
   const double error = relativeL1(measured, predicted);
-  // Width from 10 to 90 % of the plateau, over bins of 8 pixels.
-  const std::vector<double> edge = smooth(measured, 8);
-  const double plateau = 1.0 - fresnelReflectance(1.0, 1.0, c.ior);
-  const auto low = findCrossing(edge, 0.1 * plateau), high = findCrossing(edge, 0.9 * plateau);
-  ASSERT_TRUE(low && high);
-  const double width = (*high - *low) * 8.0 * picture.view.pixelSize() / blurRadius(c);
+  const std::optional<double> width = measureEdgeWidth(c, picture);
+  ASSERT_TRUE(width);
   RecordProperty("relative_l1", fmt::format("{:.6f}", error));
-  RecordProperty("width_error", fmt::format("{:.6f}", width / edgeWidth() - 1.0));
+  RecordProperty("width_error", fmt::format("{:.6f}", *width / edgeWidth() - 1.0));
   EXPECT_LE(error, 0.02);
-  EXPECT_NEAR(width / edgeWidth(), 1.0, 0.02);
+  EXPECT_NEAR(*width / edgeWidth(), 1.0, 0.02);
   EXPECT_LE(worstResidual(picture.ledgers), 1e-5);
 }
 INSTANTIATE_TEST_SUITE_P(Indices, FiniteSun, ::testing::Values(1.0, 1.33));

@@ -15,6 +15,7 @@
 #include "closed_form/ball.h"
 #include "closed_form/blur.h"
 #include "closed_form/mirrors.h"
+#include "closed_form/profile.h"
 #include "closed_form/ring.h"
 #include "closed_form/wave.h"
 #include "core/image/image_io.h"
@@ -136,15 +137,8 @@ Comparison compareRing() {
   const RingCase c;
   const PlanePicture picture = renderPlane(makeRingScene(c, 2048), ringView(c, 512), std::uint64_t{1} << 22);
   const Image predicted = ringIrradiance(c, 512);
-  std::vector<double> profiles[2];
-  for (const Image* image : {&picture.irradiance, &predicted}) {
-    std::vector<double> profile(512, 0.0);
-    for (int y = 240; y < 272; ++y)
-      for (int x = 0; x < 512; ++x)
-        profile[static_cast<std::size_t>(x)] += static_cast<double>(image->at(x, y)[0]) / 32.0;
-    profiles[image == &predicted ? 1 : 0] = profile;
-  }
-  return {"ring", cutCorners(picture.irradiance), predicted, profiles[0], profiles[1]};
+  return {"ring", cutCorners(picture.irradiance), predicted, axisProfile(picture.irradiance, 32),
+          axisProfile(predicted, 32)};
 }
 
 Comparison compareMirror() {

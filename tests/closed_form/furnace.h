@@ -20,10 +20,10 @@
 
 #include <memory>
 
+#include "closed_form/optics.h"
+#include "closed_form/plane_picture.h"
 #include "scene/builtin/setting.h"
 #include "scene/builtin/shapes.h"
-#include "support/closed_form.h"
-#include "support/closed_form_render.h"
 
 namespace nephroid::closed_form {
 
@@ -96,7 +96,9 @@ inline FurnaceResult burn(const SceneData& scene, std::uint64_t samples, int siz
   settings.samples = samples;
   settings.photons = samples * 4096;
   settings.seed = 1;
-  const RenderResult result = renderLayers(scene, scene.cameras[0], settings);
+  const Technique& reference = findTechnique("reference");
+  settings.params = ParamSet(reference.params);
+  const RenderResult result = reference.render(scene, scene.cameras[0], settings, nullptr, nullptr);
   const Image& image = *result.image.find(layer);
   FurnaceResult out{0.0, 1e30, -1e30};
   for (const float value : image.pixels) {

@@ -4,6 +4,8 @@
 
 #include <string>
 
+#include "closed_form/optics.h"
+
 namespace nephroid::closed_form {
 namespace {
 

@@ -2,6 +2,9 @@
 
 #include <gtest/gtest.h>
 
+#include "closed_form/optics.h"
+#include "closed_form/profile.h"
+
 namespace nephroid::closed_form {
 namespace {
 
@@ -33,10 +36,10 @@ TEST(HollowFormula, WithoutACavityIsTheBalls) {
 TEST(HollowFormula, AVeryThinShellIsTwoPanes) {
   // Straight ahead goes what two panes let through, each with the reflections between its faces: 1 − R′ = (1 − R)/(1 +
   // R).
-  HollowTracer tracer({{.gap = 0.05, .view_radius = 0.1}, 0.05 - 1e-7});
+  const HollowCase c{{.gap = 0.05, .view_radius = 0.1}, 0.05 - 1e-7};
   for (const double h : {0.005, 0.03, 0.04}) {
     double straight_on = 0.0;
-    for (const auto& [sequence, landing] : tracer.trace(h))
+    for (const auto& [sequence, landing] : traceHollow(c, h))
       if (std::abs(landing.radius - h) < 1e-5) straight_on += landing.share;
     const double r = fresnelReflectance(std::sqrt(1.0 - h * h / (0.05 * 0.05)), 1.0, 1.5), pane = (1.0 - r) / (1.0 + r);
     EXPECT_NEAR(straight_on, pane * pane, 1e-3) << h;

@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include "closed_form/optics.h"
+#include "closed_form/profile.h"
 #include "core/spectrum.h"
 
 namespace nephroid::closed_form {
@@ -12,10 +14,19 @@ constexpr double kTolerance_deg = 0.05;
 // degrees.
 constexpr std::uint64_t kPhotons = std::uint64_t{1} << 17;
 
+PlaneRenderer withPhotons(std::uint64_t photons) {
+  return [photons](const SceneData& scene, const PlaneView& view, const std::vector<std::string>& parameters) {
+    PlanePicture picture = renderPlane(scene, view, photons, 1, parameters);
+    EXPECT_LE(worstResidual(picture.ledgers), 1e-5);
+    return picture;
+  };
+}
+
 /// The one beam's deviation, degrees.
 double measureDeviation_deg(const PrismCase& c) {
   const double predicted = prismDeviation(radiansD(c.apex_deg), radiansD(c.incidence_deg), c.ior);
-  const std::vector<double> measured = measureDeviations(c, radiansD(c.sun_elevation_deg) + predicted, kPhotons);
+  const std::vector<double> measured =
+      measureDeviations(c, radiansD(c.sun_elevation_deg) + predicted, withPhotons(kPhotons));
   EXPECT_EQ(measured.size(), 1U);
   return measured.empty() ? 0.0 : degreesD(measured[0]);
 }
@@ -45,7 +56,7 @@ TEST(Prism, SpreadsWavelengthsByTheirIndices) {
   const double apex = radiansD(c.apex_deg), least = prismMinimumDeviation(apex, c.ior);
   c.incidence_deg = degreesD(0.5 * (apex + least));
   const std::vector<double> measured =
-      measureDeviations(c, radiansD(c.sun_elevation_deg) + least, 2 * kPhotons, {"bands=3"});
+      measureDeviations(c, radiansD(c.sun_elevation_deg) + least, withPhotons(2 * kPhotons), {"bands=3"});
   const std::vector<Band> bands = makeBands(3);
   ASSERT_EQ(measured.size(), bands.size());
   double worst = 0.0;
@@ -59,58 +70,11 @@ TEST(Prism, SpreadsWavelengthsByTheirIndices) {
   RecordProperty("error_deg", fmt::format("{:.5f}", worst));
 }
 
-/// RGB flux along the floor, in equal bins over the view.
-std::vector<dvec3> binColumns(const PlanePicture& picture, int bins) {
-  std::vector<dvec3> sums(static_cast<std::size_t>(bins), dvec3(0.0));
-  for (int k = 0; k < 3; ++k) {
-    const std::vector<double> means = picture.columnMeans(k);
-    for (std::size_t x = 0; x < means.size(); ++x)
-      sums[x * static_cast<std::size_t>(bins) / means.size()][k] += means[x];
-  }
-  return sums;
-}
-
-/// Σ|E − E*| / Σ|E*| over bins and channels, both scaled to the same sum.
-double relativeL1(const std::vector<dvec3>& measured, const std::vector<dvec3>& predicted) {
-  double sum_measured = 0.0, sum_predicted = 0.0, difference = 0.0, size = 0.0;
-  for (const dvec3& v : measured) sum_measured += v.x + v.y + v.z;
-  for (const dvec3& v : predicted) sum_predicted += v.x + v.y + v.z;
-  for (std::size_t i = 0; i < measured.size(); ++i) {
-    const dvec3 p = predicted[i] / sum_predicted, d = glm::abs(measured[i] / sum_measured - p);
-    difference += d.x + d.y + d.z;
-    size += std::abs(p.x) + std::abs(p.y) + std::abs(p.z);
-  }
-  return difference / size;
-}
-
 TEST(Prism, FansWhiteLightOutIntoTheColoursOfAllWavelengths) {
-  // From so high that the slit and the places where light leaves the prism, a few millimetres, are lost in a fan of
-  // metres: light of wavelength λ lands where a line of its elevation does.
-  PrismCase c{.ior = 1.62, .abbe = 30.0};
-  const double apex = radiansD(c.apex_deg), least = prismMinimumDeviation(apex, c.ior);
-  c.incidence_deg = degreesD(0.5 * (apex + least));
-  constexpr double kHeight = 30.0, kWidth = 4.0;
-  constexpr int kBins = 64;
-  const SceneData scene = makePrismScene(c, kHeight, 40.0);
-  const PlaneView view = prismView(radiansD(c.sun_elevation_deg) + least, kHeight, kWidth);
-
-  std::vector<dvec3> predicted(kBins, dvec3(0.0));
-  constexpr int kWavelengths = 20000;
-  for (int i = 0; i < kWavelengths; ++i) {
-    const float nm = kWavelengthMin_nm + (kWavelengthMax_nm - kWavelengthMin_nm) * (static_cast<float>(i) + 0.5F) /
-                                             static_cast<float>(kWavelengths);
-    const double ior = cauchyIndex(c.ior, c.abbe, static_cast<double>(nm)), incidence = radiansD(c.incidence_deg);
-    const double inside = std::asin(std::sin(incidence) / ior);
-    const double kept = (1.0 - fresnelReflectance(std::cos(incidence), 1.0, ior)) *
-                        (1.0 - fresnelReflectance(std::cos(apex - inside), ior, 1.0));
-    const double elevation = radiansD(c.sun_elevation_deg) + prismDeviation(apex, incidence, ior);
-    const double x = kHeight / std::tan(elevation) - static_cast<double>(view.centre.x);
-    const double bin = (x / kWidth + 0.5) * kBins;
-    if (bin >= 0.0 && bin < kBins) predicted[static_cast<std::size_t>(bin)] += kept * dvec3(wavelengthRgb(nm));
-  }
-
-  const auto measure = [&](const std::vector<std::string>& settings) {
-    return relativeL1(binColumns(renderPlane(scene, view, std::uint64_t{1} << 22, 1, settings), kBins), predicted);
+  const FanCase c;
+  const auto measure = [&](const std::vector<std::string>& parameters) {
+    const PlanePicture picture = renderPlane(c.scene(), c.view(), std::uint64_t{1} << 22, 1, parameters);
+    return relativeColourL1(binColumns(picture, c.bins), fanIrradiance(c));
   };
   // A hundred thousand photons pass the slit, some 2000 a bin, each with a colour of its own: 4 % if they came by mere
   // chance; well-spread points do better.

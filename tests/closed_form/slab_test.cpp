@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include "closed_form/optics.h"
+
 namespace nephroid::closed_form {
 namespace {
 

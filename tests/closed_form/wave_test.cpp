@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include "closed_form/profile.h"
+
 namespace nephroid::closed_form {
 namespace {
 

@@ -5,8 +5,8 @@
 
 #include <cmath>
 
+#include "closed_form/optics.h"
 #include "core/optics/dispersion.shared.h"
-#include "support/closed_form.h"
 #include "support/tiny_scenes.h"
 #include "trace/trace_scene.h"
 #include "trace/walk.h"

@@ -6,6 +6,7 @@
 #include <nlohmann/json.hpp>
 #include <thread>
 
+#include "app/cli/bench_closed_form.h"
 #include "app/cli/bench_error.h"
 #include "app/cli/bench_race.h"
 #include "app/cli/bench_speed.h"
@@ -29,7 +30,9 @@ constexpr const char* kExamples = R"(Examples:
   nephroid bench --error
   nephroid bench --error builtin:ring --technique caustic-map --set grid=512 --reference-photons 200M
   nephroid bench --race builtin:ring --svg race.svg
-  nephroid bench --race cup.glb --reference truth.exr --mask floor.png --set estimator=footprint)";
+  nephroid bench --race cup.glb --reference truth.exr --mask floor.png --set estimator=footprint
+  nephroid bench --closed-form
+  nephroid bench --closed-form ring ball-behind --technique caustic-map --set grid=256)";
 
 constexpr int kMaxRepeats = 1000;
 
@@ -38,7 +41,7 @@ struct BenchOptions {
   std::string only_technique;
   TechniqueOptions technique;
   int warmup = 1, repeats = 5;
-  bool error = false, race = false;
+  bool error = false, race = false, closed_form = false;
   double race_seconds = 20;
   std::string reference, mask, svg;
   std::uint64_t reference_photons = 0;
@@ -52,6 +55,11 @@ struct Defaults {
   std::vector<std::string> scenes;
 };
 
+/// Which of the kinds of benchmark this is, as bench/scenes.json calls it.
+const char* kindOf(const BenchOptions& options) {
+  return options.closed_form ? "closed-form" : options.race ? "race" : options.error ? "error" : "speed";
+}
+
 /// @param kind  "speed", "error" or "race"
 Defaults readDefaults(const char* kind) {
   const Json list = Json::parse(kBenchScenes)[kind];
@@ -60,9 +68,15 @@ Defaults readDefaults(const char* kind) {
           count("reference-photons"), list["scenes"].get<std::vector<std::string>>()};
 }
 
-/// Gives what the command line leaves open the value that it has for this kind of benchmark.
+/// Gives what the command line leaves open the value that it has for this kind of benchmark. Closed forms have their
+/// own: see readClosedFormOptions.
 void completeOptions(BenchOptions& options, const CLI::App& app) {
-  const Defaults defaults = readDefaults(options.race ? "race" : options.error ? "error" : "speed");
+  if (options.closed_form) {
+    if (options.scenes.empty())
+      for (const closed_form::ClosedForm& form : closed_form::closedForms()) options.scenes.push_back(form.name);
+    return;
+  }
+  const Defaults defaults = readDefaults(kindOf(options));
   if (options.scenes.empty()) options.scenes = defaults.scenes;
   if (!isGiven(app, "--size")) options.technique.size = defaults.size;
   if (!isGiven(app, "--samples")) options.technique.samples = defaults.samples;
@@ -76,10 +90,16 @@ void checkOptions(const BenchOptions& options, const CLI::App& app) {
     for (const char* name : names)
       if (isGiven(app, name)) throw UsageError(fmt::format("{} {}", name, why));
   };
-  if (options.error && options.race) throw UsageError("--error and --race are two benchmarks: one at a time");
+  if (options.error + options.race + options.closed_form > 1)
+    throw UsageError("--error, --race and --closed-form are benchmarks of their own: one at a time");
   if (!options.error && !options.race)
-    refuse({"--reference-photons"}, "is for --error and --race: speed is measured without a reference");
+    refuse({"--reference-photons"}, "is for --error and --race: others need no reference");
   if (!options.race) refuse({"--race-seconds", "--reference", "--mask", "--svg"}, "is for --race");
+  if (options.closed_form) {
+    refuse({"--warmup", "--repeats"}, "is for speed: with --closed-form each technique renders once");
+    refuse({"--size"}, "is not for --closed-form, whose pictures have the size that their formula is compared at");
+    refuse({"--seconds"}, "is not for --closed-form: what it measures must not depend on how fast a machine is");
+  }
   if (options.error) refuse({"--warmup", "--repeats"}, "is for speed: with --error each technique renders once");
   if (options.race) {
     refuse({"--warmup", "--repeats"}, "is for speed: with --race each estimator renders once for each point");
@@ -109,11 +129,11 @@ Json describeRun(const BenchOptions& options) {
   Json run{{"version", version()}, {"cpu", readCpuModel()}, {"threads", threadCount(technique)}};
   if (options.error || options.race) {
     run["reference_photons"] = options.reference_photons;
-  } else {
+  } else if (!options.closed_form) {
     run["warmup"] = options.warmup;
     run["repeats"] = options.repeats;
   }
-  run["size"] = fmt::format("{}x{}", technique.size.width, technique.size.height);
+  if (!options.closed_form) run["size"] = fmt::format("{}x{}", technique.size.width, technique.size.height);
   run["samples"] = technique.samples;
   run["photons"] = technique.photons;
   run["seed"] = technique.seed;
@@ -122,29 +142,42 @@ Json describeRun(const BenchOptions& options) {
   return run;
 }
 
-/// The one that was named, or all that have a use for the device; of errors, all that draw a caustic.
+/// Whether a technique that was not named is measured: all are for their speed, those that draw a caustic frame by
+/// frame for their error, and for closed forms the reference as well.
+bool isMeasured(const Technique& technique, const BenchOptions& options) {
+  if (options.error) return technique.make_realtime != nullptr;
+  if (options.closed_form) return technique.make_realtime != nullptr || technique.is_progressive;
+  return true;
+}
+
+/// The one that was named, or all that have a use for the device.
 std::vector<const Technique*> chooseTechniques(const BenchOptions& options) {
   if (!options.only_technique.empty())
     return {&chooseTechnique(options.only_technique, {.device = options.technique.device})};
   std::vector<const Technique*> chosen;
   for (const Technique& technique : techniques())
-    if (takesDevice(technique, options.technique.device) && (!options.error || technique.make_realtime != nullptr))
+    if (takesDevice(technique, options.technique.device) && isMeasured(technique, options))
       chosen.push_back(&technique);
   return chosen;
 }
 
-/// Calls `measure(technique)` for each technique. Where technique and device were left to us, those that the machine
-/// has no device for are left out.
+/// Calls `measure()`. Where technique and device were left to us, a technique that the machine has no device for is
+/// left out.
+template <class Measure>
+void whereThereIsADevice(const BenchOptions& options, const Technique& technique, const Measure& measure) {
+  try {
+    measure();
+  } catch (const DeviceError& error) {
+    if (!options.only_technique.empty() || options.technique.device != "auto") throw;
+    warnOnce(fmt::format("{} is left out: {}", technique.name, error.what()));
+  }
+}
+
+/// Calls `measure(technique)` for each technique.
 template <class Measure>
 void forEachTechnique(const BenchOptions& options, const Measure& measure) {
-  for (const Technique* technique : chooseTechniques(options)) {
-    try {
-      measure(*technique);
-    } catch (const DeviceError& error) {
-      if (!options.only_technique.empty() || options.technique.device != "auto") throw;
-      warnOnce(fmt::format("{} is left out: {}", technique->name, error.what()));
-    }
-  }
+  for (const Technique* technique : chooseTechniques(options))
+    whereThereIsADevice(options, *technique, [&] { measure(*technique); });
 }
 
 void benchSpeed(const BenchOptions& options, Json& results) {
@@ -191,12 +224,45 @@ void benchRace(const BenchOptions& options, Json& results) {
   }
 }
 
+/// What bench/scenes.json has for closed forms, and the command line.
+ClosedFormOptions readClosedFormOptions(const BenchOptions& options) {
+  const Json list = Json::parse(kBenchScenes)["closed-form"];
+  const auto count = [&](const char* key) { return parseCount(key, list[key].get<std::string>()); };
+  return {options.technique, list["frame-set"].get<std::vector<std::string>>(), count("eye-samples"), count("frames")};
+}
+
+std::vector<std::string> readClosedFormEstimators() {
+  return Json::parse(kBenchScenes)["closed-form"]["estimators"].get<std::vector<std::string>>();
+}
+
+void benchClosedForm(const BenchOptions& options, Json& results) {
+  ClosedFormOptions closed = readClosedFormOptions(options);
+  std::vector<Drawer> drawers =
+      listDrawers(chooseTechniques(options), closed.technique.parameters, readClosedFormEstimators());
+  if (drawers.empty()) throw UsageError("--set estimator=: the technique has no estimators to choose from");
+  checkParameters(closed.technique.parameters, drawers);
+  std::vector<const closed_form::ClosedForm*> forms;
+  for (const std::string& name : options.scenes) forms.push_back(&closed_form::findClosedForm(name));
+  if (!options.json) writeStdout(formatClosedFormHeader());
+  for (const closed_form::ClosedForm* form : forms)
+    for (const Drawer& drawer : drawers)
+      whereThereIsADevice(options, *drawer.technique, [&] {
+        for (const ClosedFormRow& row : measureClosedForm(*form, drawer, closed)) {
+          results.push_back(closedFormToJson(row));
+          if (!options.json) writeStdout(formatClosedFormRow(row));
+        }
+      });
+}
+
 ExitCode runBench(BenchOptions options, const CLI::App& app) {
   checkOptions(options, app);
   completeOptions(options, app);
   Json run = describeRun(options);
   try {
-    (options.race ? benchRace : options.error ? benchError : benchSpeed)(options, run["results"]);
+    (options.closed_form ? benchClosedForm
+     : options.race      ? benchRace
+     : options.error     ? benchError
+                         : benchSpeed)(options, run["results"]);
   } catch (const InterruptedError&) {  // what was measured before is whole, and is told
   }
   if (options.json) writeStdout(run.dump(2) + "\n");
@@ -215,9 +281,13 @@ TechniqueDefaults describeAllDefaults() {
     return fmt::format("{}, with --error {}", first, second);
   };
   const Size race = readDefaults("race").size;
-  return {both("all", "all that draw caustics in real time"),
+  const Json closed_form = Json::parse(kBenchScenes)["closed-form"];
+  const auto count = [&](const char* key) { return closed_form[key].get<std::string>(); };
+  return {both("all", "all that draw caustics in real time") + ", with --closed-form reference and those",
           fmt::format("{}, with --race {}x{}", both(a.size, b.size), race.width, race.height),
-          both(a.photons, b.photons), both(a.samples, b.samples)};
+          both(a.photons, b.photons) + ", with --closed-form what each form needs",
+          fmt::format("{}, with --closed-form {} of the reference and {} of others", both(a.samples, b.samples),
+                      count("eye-samples"), count("frames"))};
 }
 
 }  // namespace
@@ -228,11 +298,12 @@ Command addBenchCommand(CLI::App& root) {
   options->reference_photons = error.reference_photons;
   CLI::App* app = addCommand(root, "bench",
                              "Measure speed and memory of each technique on each scene, its error against the "
-                             "reference, or the error over CPU time of the reference's own estimators.",
+                             "reference or against formulas, or the error over CPU time of the reference's own "
+                             "estimators.",
                              kExamples);
   addArguments(*app, "SCENES", options->scenes, "SCENE",
-               {"Scenes, as for render.",
-                fmt::format("{}; with --error {}; with --race {}", fmt::join(speed.scenes, " "),
+               {"Scenes, as for render; with --closed-form, names of closed forms.",
+                fmt::format("{}; with --error {}; with --race {}; with --closed-form all", fmt::join(speed.scenes, " "),
                             fmt::join(error.scenes, " "), fmt::join(race.scenes, " ")),
                 "", ""});
   addTechniqueOptions(*app, options->technique, options->only_technique, describeAllDefaults());
@@ -248,6 +319,10 @@ Command addBenchCommand(CLI::App& root) {
   addSwitch(*app, "--race", options->race,
             "Instead of speed, let the estimators of the technique 'reference' race: nRMSE, L1 and relMSE of direct + "
             "caustic over the CPU time that it took from the scene to the finished file.");
+  addSwitch(*app, "--closed-form", options->closed_form,
+            "Instead of speed, tell how far each technique is from pictures that can be worked out with pen and paper: "
+            "slab, water, ball, ring, prism, drop, mirrors, a shadow's edge; with the tolerance and whether it holds. "
+            "Of the technique 'reference' by the estimators light and footprint, or those of --set estimator=.");
   addValue(*app, "--race-seconds", options->race_seconds, "S",
            {"With --race: no render is begun that would take longer.", "20", "0.001 to 1e7", "CPU s"},
            checkNumber(1e-3, 1e7));

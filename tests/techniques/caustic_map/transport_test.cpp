@@ -4,9 +4,9 @@
 #include <cstring>
 #include <optional>
 
+#include "closed_form/optics.h"
 #include "core/optics/fresnel.shared.h"
 #include "scene/load.h"
-#include "support/closed_form.h"
 #include "support/gpu_fixture.h"
 #include "support/tiny_scenes.h"
 #include "techniques/caustic_map/light_rig.h"

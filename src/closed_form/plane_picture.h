@@ -1,7 +1,8 @@
-// What the reference renderer says about an irradiance that a formula also knows.
+// What a technique says about an irradiance that a formula also knows.
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -41,22 +42,33 @@ struct PlanePicture {
   /// Mean over each column, one channel.
   std::vector<double> columnMeans(int channel = 0) const;
   std::vector<double> rowMeans(int channel = 0) const;
+  /// Whether no pixel has any light.
+  bool isBlack() const;
+  /// Flux-weighted mean distance from the picture's centre, m, one channel.
+  double meanRadius(int channel = 0) const;
   /// Mean over rings about the picture's centre, one channel: pixels belong to the ring that holds their centre.
   std::vector<double> ringMeans(double radius, std::size_t rings, int channel = 0) const;
 };
 
-/// The caustic's irradiance by the reference technique's photons. The same for any number of threads.
-/// @param settings  "key=value" for the technique
+/// How to render a view.
+struct PlaneRender {
+  std::string technique{"reference"};
+  RenderSettings settings;              ///< budgets, seed, device, parameters; without these, the technique's defaults
+  std::vector<std::string> parameters;  ///< "key=value", on top of those
+  ProgressSink* progress = nullptr;
+  const StopToken* stop = nullptr;
+};
+
+/// The caustic's irradiance. By the reference the same for any number of threads.
+PlanePicture renderPlane(const SceneData& scene, const PlaneView& view, PlaneRender render);
+/// Likewise by the reference's photons.
 PlanePicture renderPlane(const SceneData& scene, const PlaneView& view, std::uint64_t photons, std::uint64_t seed = 1,
-                         const std::vector<std::string>& settings = {});
+                         const std::vector<std::string>& parameters = {});
 
-/// Likewise by any technique. @param render  budgets, seed, device
-PlanePicture renderPlane(const SceneData& scene, const PlaneView& view, std::string_view technique,
-                         RenderSettings render, const std::vector<std::string>& settings = {});
-
-/// Any layers from the eye and the lights.
-RenderResult renderLayers(const SceneData& scene, const Camera& camera, RenderSettings settings,
-                          std::string_view technique = "reference");
+/// Renders a view in whatever way its owner has chosen.
+/// @param parameters  "key=value" that the closed form itself needs, such as a number of bands
+using PlaneRenderer = std::function<PlanePicture(const SceneData& scene, const PlaneView& view,
+                                                 const std::vector<std::string>& parameters)>;
 
 /// The worst of the ledgers' residuals: everything emitted is found again if it is at most 1e-5.
 double worstResidual(const std::vector<Ledger>& ledgers);

@@ -1,44 +1,21 @@
-// The primary rainbow of a drop of water.
-//
-// A ray that meets a ball at i (sin i is its distance from the axis over the radius) runs inside at r, sin i = n sin r,
-// is mirrored once at the back and leaves at i again. It is turned by i − r on entering, by π − 2r at the back and by
-// i − r on leaving:
-//
-//   D(i) = π + 2i − 4r.
-//
-// dD/di = 2 − 4 cos i / (n cos r) vanishes where n² cos² r = 4 cos² i; with n² cos² r = n² − sin² i,
-//
-//   cos i = √((n² − 1)/3).
-//
-// There D is least and light is densest: the bow, at π − D = 4r − 2i from the point opposite to the sun, beyond which
-// no such light comes. The ray passes the drop's centre at sin i radii, so on a screen at a distance of ρ radii it is
-// seen asin(sin i / ρ) further out.
-#pragma once
+#include "closed_form/drop.h"
 
+#include <algorithm>
 #include <cmath>
 
+#include "closed_form/optics.h"
+#include "core/spectrum.h"
 #include "scene/builtin/shapes.h"
-#include "support/closed_form.h"
-#include "support/closed_form_render.h"
 
 namespace nephroid::closed_form {
 
-struct DropCase {
-  double ior = 1.333, abbe = 55.8;  // water
-  double distance = 3000.0;         // of the screen, in radii of the drop
-  double angle_deg = 42.0;          // of the screen's middle from the drop's axis
-  double half_angle_deg = 3.0;      // of the screen
-};
-
-/// Where on the screen the bow ends, from the axis, rad.
-inline double bowAngle(const DropCase& c, double ior) {
+double bowAngle(const DropCase& c, double ior) {
   const double incidence = std::acos(std::sqrt((ior * ior - 1.0) / 3.0));
   const double inside = std::asin(std::sin(incidence) / ior);
   return 4.0 * inside - 2.0 * incidence + std::asin(std::sin(incidence) / c.distance);
 }
 
-/// The screen seen squarely: rows across the bow, the outside on top.
-inline PlaneView dropView(const DropCase& c) {
+PlaneView dropView(const DropCase& c) {
   const double angle = radiansD(c.angle_deg);
   PlaneView view;
   view.centre = vec3(dvec3(std::sin(angle), std::cos(angle), 0.0) * c.distance);
@@ -51,8 +28,7 @@ inline PlaneView dropView(const DropCase& c) {
   return view;
 }
 
-/// A ball of radius 1 under a sun from above, and a screen that is small and far enough to stand beside its light.
-inline SceneData makeDropScene(const DropCase& c) {
+SceneData makeDropScene(const DropCase& c) {
   SceneData scene;
   scene.name = "drop";
   Material water;
@@ -79,8 +55,7 @@ inline SceneData makeDropScene(const DropCase& c) {
   return scene;
 }
 
-/// RGB flux by angle from the axis, in equal bins over [lower, upper], rad.
-inline std::vector<dvec3> angularProfile(const PlanePicture& picture, double lower, double upper, std::size_t bins) {
+std::vector<dvec3> angularProfile(const PlanePicture& picture, double lower, double upper, std::size_t bins) {
   const PlaneView& view = picture.view;
   const dvec3 right(cross(view.up, view.normal));
   std::vector<dvec3> profile(bins, dvec3(0.0));
@@ -96,6 +71,28 @@ inline std::vector<dvec3> angularProfile(const PlanePicture& picture, double low
     }
   }
   return profile;
+}
+
+std::vector<double> bowErrors_deg(const DropCase& c, const PlanePicture& picture) {
+  constexpr double kBin_deg = 0.02, kLower_deg = 40.0, kUpper_deg = 44.0;
+  const std::vector<Band> bands = makeBands(kBowBands);
+  const auto bins = static_cast<std::size_t>(std::lround((kUpper_deg - kLower_deg) / kBin_deg));
+  const std::vector<dvec3> profile = angularProfile(picture, radiansD(kLower_deg), radiansD(kUpper_deg), bins);
+  const glm::dmat3 bands_from_rgb =
+      glm::inverse(glm::dmat3(dvec3(bands[0].weight), dvec3(bands[1].weight), dvec3(bands[2].weight)));
+  std::vector<double> errors;
+  for (int b = 0; b < kBowBands; ++b) {
+    std::vector<double> flux;
+    for (const dvec3& rgb : profile) flux.push_back((bands_from_rgb * rgb)[b]);
+    const double densest = *std::max_element(flux.begin(), flux.end());
+    // Light that the drop's front mirrors comes to all angles, thinly.
+    std::size_t edge = bins;
+    while (edge > 0 && flux[edge - 1] < 0.3 * densest) --edge;
+    const double ior =
+        cauchyIndex(c.ior, c.abbe, static_cast<double>(bands[static_cast<std::size_t>(b)].wavelength_nm));
+    errors.push_back(std::abs(kLower_deg + kBin_deg * static_cast<double>(edge) - degreesD(bowAngle(c, ior))));
+  }
+  return errors;
 }
 
 }  // namespace nephroid::closed_form

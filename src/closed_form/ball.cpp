@@ -1,38 +1,17 @@
-// The caustic of a glass ball under a sun, on a plane behind it.
-//
-// A ray at distance h from the axis meets the ball (radius a) at θ with sin θ = h/a and refracts to θ', sin θ = n sin
-// θ'. It stays in its meridional plane, and every further hit is at θ' again, so all reflectances on the way are the
-// same R(θ). It gives off
-//
-//   outside        share R             turned by  π − 2θ
-//   order k >= 0   share (1 − R)² R^k  turned by  2(θ − θ') + k(π − 2θ')
-//
-// (towards the axis and beyond). A ring of rays h … h + dh carries 2π h dh E⊥ and lands on the ring r(h) … r(h + dh):
-//
-//   E(r) = Σ over all h with |r(h)| = r, over all orders, of  E⊥ share(h) h / (r |dr/dh|).
-//
-// r(h) has its fold where the caustic surface cuts the plane, and r = 0 at h ≠ 0 before the paraxial focus, at
-// n a / (2(n − 1)) from the centre; E is infinite in both places. Hence rings of h are mapped to intervals of r and
-// gathered in bins, which are finite everywhere.
-#pragma once
+#include "closed_form/ball.h"
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <cmath>
+
+#include "closed_form/optics.h"
+#include "closed_form/profile.h"
 #include "scene/load.h"
-#include "support/closed_form.h"
-#include "support/closed_form_render.h"
 
 namespace nephroid::closed_form {
 
-struct BallCase {
-  double radius = 0.05, ior = 1.5;
-  double gap = 0.05;         ///< between the ball's lowest point and the plane, m
-  double view_radius = 0.1;  ///< of the profile, m
-};
-
-/// Where one order of a ray lands, as |r|; nothing if it leaves upwards. The ray falls along −y at x = −h, about a ball
-/// at the origin; turning towards the axis is counter-clockwise.
-inline std::optional<double> landOnPlane(const BallCase& c, double theta, double theta_inside, int order) {
+std::optional<double> landOnPlane(const BallCase& c, double theta, double theta_inside, int order) {
   // Polar angle of the point where it leaves: order −1 leaves where it came.
   const double entry = 0.5 * kPiD + theta;
   const double exit = entry + (order + 1) * (kPiD - 2.0 * theta_inside);
@@ -44,8 +23,7 @@ inline std::optional<double> landOnPlane(const BallCase& c, double theta, double
   return std::abs(c.radius * std::cos(exit) - drop * std::cos(dir) / std::sin(dir));
 }
 
-/// E / E⊥ in `bins` rings of equal width out to view_radius.
-inline std::vector<double> ballIrradiance(const BallCase& c, std::size_t bins) {
+std::vector<double> ballIrradiance(const BallCase& c, std::size_t bins) {
   constexpr int kRings = 400'000, kOrders = 6;
   Profile profile(0.0, c.view_radius, bins);
   std::vector<std::optional<double>> previous(kOrders + 2);
@@ -66,17 +44,16 @@ inline std::vector<double> ballIrradiance(const BallCase& c, std::size_t bins) {
   return profile.perAnnulus();
 }
 
-/// The paraxial focus of a ball is n a / (2(n − 1)) behind its centre.
-inline double ballFocalDistance(double radius, double ior) { return ior * radius / (2.0 * (ior - 1.0)); }
+double ballFocalDistance(double radius, double ior) { return ior * radius / (2.0 * (ior - 1.0)); }
 
-inline SceneData makeBallScene(const BallCase& c, int segments) {
+SceneData makeBallScene(const BallCase& c, int segments) {
   return loadScene(
       fmt::format("builtin:sphere?light=sun&sun-elevation=90&irradiance=1&floor-size=2&radius={}&height={}&ior={}&"
                   "segments={}",
                   c.radius, c.gap, c.ior, segments));
 }
 
-inline PlaneView ballView(const BallCase& c, int pixels) {
+PlaneView ballView(const BallCase& c, int pixels) {
   PlaneView view;
   view.distance = 0.5 * c.gap;
   view.width = 2.0 * c.view_radius;

@@ -1,38 +1,17 @@
-// Curved mirrors: the paraboloid, which has a focus, and the sphere, which has none.
-//
-// Paraboloid y = r²/(4f), light along −y. At r the normal is tilted by β, tan β = r/(2f), so the reflected ray is
-// turned by 2β from +y towards the axis, and tan 2β = 2 tan β/(1 − tan² β) = r/(f − r²/(4f)): it passes through (0, f),
-// for every r. All the light that the mirror takes up, less what the metal absorbs, is on a receiver of any size about
-// the focus:
-//
-//   Φ = ∫ E⊥ ρ(cos β) dA⊥,   cos β = 1/√(1 + r²/(4f²)).
-//
-// Sphere of radius R about the origin, concave upwards, its lowest point at −R. At h the normal is tilted by α, sin α =
-// h/R, the reflected ray makes 2α with +y. In the triangle of centre, mirror point and crossing the base angles are
-// both α and the base is R, so it crosses the axis at the distance R/(2 cos α) below the centre:
-//
-//   s(h) = R − R/(2 cos α)  above the lowest point, R/2 for h → 0 (the paraxial focus), less farther out.
-//
-// On a plane at the height p above the lowest point the ring h lands at r(h) = (s − p) tan 2α (negative: beyond the
-// axis).
-#pragma once
+#include "closed_form/mirrors.h"
 
-#include <fmt/format.h>
+#include <algorithm>
+#include <cmath>
+#include <utility>
 
+#include "closed_form/optics.h"
+#include "closed_form/profile.h"
 #include "scene/builtin/setting.h"
 #include "scene/builtin/shapes.h"
-#include "support/closed_form.h"
-#include "support/closed_form_render.h"
 
 namespace nephroid::closed_form {
 
-struct ParaboloidCase {
-  double focal_length = 1.0, reflectance = 0.8;
-  double x0 = 0.2, x1 = 1.2, half_z = 0.5;  ///< an off-axis rectangle, so that the receiver shades nothing of it
-  double receiver = 0.02;                   ///< side of the square receiver about the focus
-};
-
-inline double paraboloidFlux(const ParaboloidCase& c) {
+double paraboloidFlux(const ParaboloidCase& c) {
   constexpr int kSteps = 400;
   const double dx = (c.x1 - c.x0) / kSteps, dz = 2.0 * c.half_z / kSteps;
   double flux = 0.0;
@@ -46,7 +25,7 @@ inline double paraboloidFlux(const ParaboloidCase& c) {
   return flux;
 }
 
-inline SceneData makeParaboloidScene(const ParaboloidCase& c, int cells) {
+SceneData makeParaboloidScene(const ParaboloidCase& c, int cells) {
   SceneData scene;
   const double middle = 0.5 * (c.x0 + c.x1), f = c.focal_length;
   Mesh mirror = makeHeightField("mirror", c.x1 - c.x0, 2.0 * c.half_z, cells, cells, [&](double x, double z) {
@@ -62,8 +41,7 @@ inline SceneData makeParaboloidScene(const ParaboloidCase& c, int cells) {
   return scene;
 }
 
-/// The receiver's lower face.
-inline PlaneView receiverView(double height, double width, int pixels) {
+PlaneView receiverView(double height, double width, int pixels) {
   PlaneView view;
   view.centre = vec3(0, static_cast<float>(height), 0);
   view.normal = vec3(0, -1, 0);
@@ -74,21 +52,15 @@ inline PlaneView receiverView(double height, double width, int pixels) {
   return view;
 }
 
-struct SphericalMirrorCase {
-  double radius = 1.0, h0 = 0.03, h1 = 0.5;  ///< the zone from h0 to h1 about the axis
-  double plane = 0.5;                        ///< of the receiver, above the lowest point
-  double receiver_radius = 0.03;
-};
-
-inline double sphericalCrossing(double radius, double h) {
+double sphericalCrossing(double radius, double h) {
   return radius - radius / (2.0 * std::sqrt(1.0 - h * h / (radius * radius)));
 }
-inline double sphericalLanding(const SphericalMirrorCase& c, double h) {
+
+double sphericalLanding(const SphericalMirrorCase& c, double h) {
   return (sphericalCrossing(c.radius, h) - c.plane) * std::tan(2.0 * std::asin(h / c.radius));
 }
 
-/// E / E⊥ in rings on the receiver, which shades the mirror's middle.
-inline std::vector<double> sphericalIrradiance(const SphericalMirrorCase& c, std::size_t bins) {
+std::vector<double> sphericalIrradiance(const SphericalMirrorCase& c, std::size_t bins) {
   constexpr int kRings = 200'000;
   Profile profile(0.0, c.receiver_radius, bins);
   const double from = std::max(c.h0, c.receiver_radius), step = (c.h1 - from) / kRings;
@@ -100,8 +72,7 @@ inline std::vector<double> sphericalIrradiance(const SphericalMirrorCase& c, std
   return profile.perAnnulus();
 }
 
-/// A perfect mirror: the zone of the sphere about (0, R, 0), facing up, and a round receiver above it.
-inline SceneData makeSphericalMirrorScene(const SphericalMirrorCase& c, int rows, int segments) {
+SceneData makeSphericalMirrorScene(const SphericalMirrorCase& c, int rows, int segments) {
   SceneData scene;
   const double a0 = std::asin(c.h0 / c.radius), a1 = std::asin(c.h1 / c.radius);
   std::vector<ProfilePoint> profile;
@@ -117,6 +88,19 @@ inline SceneData makeSphericalMirrorScene(const SphericalMirrorCase& c, int rows
   addObject(scene, makeDisc("receiver", {0, c.plane, 0}, c.receiver_radius, 256), makeDiffuse("receiver", vec3(0.5F)));
   scene.lights.push_back(makeSun({0, -1, 0}));
   return scene;
+}
+
+double measureCrossing(double h, const PlaneRenderer& render) {
+  constexpr double kPlanes[2] = {0.30, 0.38};
+  double radii[2];
+  for (int i = 0; i < 2; ++i) {
+    SphericalMirrorCase c{.h0 = h - 0.002, .h1 = h + 0.002, .plane = kPlanes[i], .receiver_radius = 0.2};
+    // Receivers wider than the zone would shade it: as wide as the light on them, and some.
+    c.receiver_radius = std::min(1.2 * sphericalLanding(c, h), 0.95 * h);
+    const PlaneView view = receiverView(c.plane, 2.0 * c.receiver_radius, 512);
+    radii[i] = render(makeSphericalMirrorScene(c, 8, 1024), view, {}).meanRadius();
+  }
+  return kPlanes[0] + (kPlanes[1] - kPlanes[0]) * radii[0] / (radii[0] - radii[1]);
 }
 
 }  // namespace nephroid::closed_form

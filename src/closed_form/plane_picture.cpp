@@ -1,4 +1,4 @@
-#include "support/closed_form_render.h"
+#include "closed_form/plane_picture.h"
 
 #include <algorithm>
 #include <cmath>
@@ -39,6 +39,22 @@ std::vector<double> PlanePicture::rowMeans(int channel) const {
   return means;
 }
 
+bool PlanePicture::isBlack() const {
+  return std::all_of(irradiance.pixels.begin(), irradiance.pixels.end(), [](float value) { return value == 0.0F; });
+}
+
+double PlanePicture::meanRadius(int channel) const {
+  double sum = 0.0, moment = 0.0;
+  for (int y = 0; y < irradiance.height; ++y) {
+    for (int x = 0; x < irradiance.width; ++x) {
+      const double value = static_cast<double>(irradiance.at(x, y)[channel]);
+      sum += value;
+      moment += value * std::hypot(x + 0.5 - 0.5 * irradiance.width, y + 0.5 - 0.5 * irradiance.height);
+    }
+  }
+  return moment / sum * view.pixelSize();
+}
+
 std::vector<double> PlanePicture::ringMeans(double radius, std::size_t rings, int channel) const {
   std::vector<double> sums(rings, 0.0), counts(rings, 0.0);
   for (int y = 0; y < irradiance.height; ++y) {
@@ -54,32 +70,27 @@ std::vector<double> PlanePicture::ringMeans(double radius, std::size_t rings, in
   return sums;
 }
 
-RenderResult renderLayers(const SceneData& scene, const Camera& camera, RenderSettings settings,
-                          std::string_view technique_name) {
-  const Technique& technique = findTechnique(technique_name);
+PlanePicture renderPlane(const SceneData& scene, const PlaneView& view, PlaneRender render) {
+  const Technique& technique = findTechnique(render.technique);
+  RenderSettings& settings = render.settings;
+  settings.width = view.columns, settings.height = view.rows;
+  settings.layers = {"irradiance_caustic"};
   if (settings.params.specs().empty()) settings.params = ParamSet(technique.params);
-  return technique.render(scene, camera, settings, nullptr, nullptr);
+  for (const std::string& parameter : render.parameters) {
+    const std::size_t mark = parameter.find('=');
+    settings.params.set(parameter.substr(0, mark), parameter.substr(mark + 1));
+  }
+  RenderResult result = technique.render(scene, view.camera(), settings, render.progress, render.stop);
+  return {view, *result.image.find("irradiance_caustic"), std::move(result.ledgers), std::move(result.stats)};
 }
 
 PlanePicture renderPlane(const SceneData& scene, const PlaneView& view, std::uint64_t photons, std::uint64_t seed,
-                         const std::vector<std::string>& settings) {
-  RenderSettings render;
-  render.photons = photons;
-  render.seed = seed;
-  return renderPlane(scene, view, "reference", std::move(render), settings);
-}
-
-PlanePicture renderPlane(const SceneData& scene, const PlaneView& view, std::string_view technique,
-                         RenderSettings render, const std::vector<std::string>& settings) {
-  render.width = view.columns, render.height = view.rows;
-  render.layers = {"irradiance_caustic"};
-  render.params = ParamSet(findTechnique(technique).params);
-  for (const std::string& setting : settings) {
-    const std::size_t mark = setting.find('=');
-    render.params.set(setting.substr(0, mark), setting.substr(mark + 1));
-  }
-  RenderResult result = renderLayers(scene, view.camera(), std::move(render), technique);
-  return {view, *result.image.find("irradiance_caustic"), std::move(result.ledgers), std::move(result.stats)};
+                         const std::vector<std::string>& parameters) {
+  PlaneRender render;
+  render.parameters = parameters;
+  render.settings.photons = photons;
+  render.settings.seed = seed;
+  return renderPlane(scene, view, std::move(render));
 }
 
 double worstResidual(const std::vector<Ledger>& ledgers) {
