@@ -61,14 +61,20 @@ class CameraModel {
     if (orthographic_) {
       c.dir = -forward_;
       c.distance = depth;
-      c.importance = 1.0F / pixel_area_;
+      c.importance = importanceAt(position);
       return c;
     }
     c.distance = length(from_eye);
     c.dir = from_eye / -c.distance;
-    const float cos_theta = depth / c.distance;
-    c.importance = 1.0F / (c.distance * c.distance * pixel_area_ * cos_theta * cos_theta * cos_theta);
+    c.importance = importanceAt(position);
     return c;
+  }
+  /// CameraConnection::importance of a point before the camera: pixels per area perpendicular to the ray, 1/m².
+  float importanceAt(vec3 position) const {
+    if (orthographic_) return 1.0F / pixel_area_;
+    const vec3 from_eye = position - eye_;
+    const float distance = length(from_eye), cos_theta = dot(from_eye, forward_) / distance;
+    return 1.0F / (distance * distance * pixel_area_ * cos_theta * cos_theta * cos_theta);
   }
 
   /// How a point that the camera sees moves over the film, in pixels, when it moves by `offset`, to first order.

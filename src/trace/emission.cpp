@@ -95,7 +95,8 @@ class SunEmitter final : public Emitter {
     name_ = light.name;
   }
 
-  EmittedPhoton emit(Sampler& sampler) const override {
+  EmittedPhoton emit(Sampler& sampler, vec3& normal_out) const override {
+    normal_out = vec3(0.0F);
     const vec2 uv = mask_.sample(sampler.next2D());
     vec3 dir = frame_.z;
     if (sin_half_angle_ > 0.0F) {
@@ -110,6 +111,10 @@ class SunEmitter final : public Emitter {
     photon.origin = on_plane - dir * distanceToLeave(on_plane, -dir);
     photon.flux = expected_flux_;
     return photon;
+  }
+  float arrivalDensity(const LightRay&) const override {
+    const double directions = kPi * sin_half_angle_ * sin_half_angle_;
+    return static_cast<float>(1.0 / (sin_half_angle_ > 0.0F ? area_ * directions : area_));
   }
   EmissionExtent extentOf(const EmittedPhoton&) const override {
     return {static_cast<float>(std::sqrt(area_)), std::sqrt(kPi) * sin_half_angle_};
@@ -187,7 +192,8 @@ class PointEmitter final : public Emitter {
     name_ = light.name;
   }
 
-  EmittedPhoton emit(Sampler& sampler) const override {
+  EmittedPhoton emit(Sampler& sampler, vec3& normal_out) const override {
+    normal_out = vec3(0.0F);
     EmittedPhoton photon;
     photon.dir = frame_.toWorld(capFromSquare(mask_.sample(sampler.next2D()), one_minus_cos_));
     photon.origin = light_.position;
@@ -199,6 +205,10 @@ class PointEmitter final : public Emitter {
     }
     photon.flux = intensityAlong(light_, photon.dir) * static_cast<float>(solid_angle_);
     return photon;
+  }
+  float arrivalDensity(const LightRay& ray) const override {
+    const float area = light_.radius > 0.0F ? kPi * light_.radius * light_.radius : ray.distance * ray.distance;
+    return 1.0F / static_cast<float>(solid_angle_ * area);
   }
   EmissionExtent extentOf(const EmittedPhoton&) const override {
     return {std::sqrt(kPi) * light_.radius, static_cast<float>(std::sqrt(solid_angle_))};
@@ -269,7 +279,7 @@ class MeshEmitter final : public Emitter {
     name_ = scene.scene().instances[light.instance].name;
   }
 
-  EmittedPhoton emit(Sampler& sampler) const override {
+  EmittedPhoton emit(Sampler& sampler, vec3& normal_out) const override {
     EmittedPhoton photon;
     const vec2 u_place = sampler.next2D(), u_dir = sampler.next2D(), u_choice = sampler.next2D();
     const auto choice = light_.triangles.sample(u_place.x);
@@ -285,6 +295,7 @@ class MeshEmitter final : public Emitter {
     point.position_error = 0x1p-19F * (maxComponent(glm::abs(point.position)) + length(p[1] - p[0]));
     const bool front = !light_.double_sided || u_choice.y < 0.5F;
     if (!front) normal = -normal;
+    normal_out = normal;
     float density = 0.0F;
     photon.dir = aim(point.position, normal, u_dir, u_choice.x, density);
     photon.origin = offsetOrigin(point, photon.dir);
@@ -293,6 +304,16 @@ class MeshEmitter final : public Emitter {
       photon.flux = materials_.emission(point, front) *
                     static_cast<float>(light_.area * cos_theta * (light_.double_sided ? 2.0 : 1.0) / density);
     return photon;
+  }
+  float arrivalDensity(const LightRay& ray) const override {
+    const float cos_theta = dot(ray.dir, ray.normal);
+    if (cos_theta <= 0.0F) return 0.0F;
+    Cone cones[EmissionTargets::kMaxClusters];
+    const vec3 place = ray.arrival - ray.distance * ray.dir;
+    const float total = fillCones(place, ray.normal, cones);
+    return total > 0.0F ? aimDensity(cones, total, ray.dir, kNone) /
+                              static_cast<float>(light_.area * cos_theta * (light_.double_sided ? 2.0 : 1.0))
+                        : 0.0F;
   }
   EmissionExtent extentOf(const EmittedPhoton& photon) const override {
     // Flux over radiance is the volume of phase space; textures are taken at their mean.
@@ -316,26 +337,36 @@ class MeshEmitter final : public Emitter {
     const float sin2 = radius * radius / squared;
     return {to / std::sqrt(squared), sin2 / (1.0F + std::sqrt(1.0F - sin2))};
   }
-  vec3 aim(vec3 position, vec3 normal, vec2 u, float u_choice, float& density) const {
-    Cone cones[EmissionTargets::kMaxClusters];
+  /// @param cones  as many as there are clusters  @return the sum of their 1 − cos
+  float fillCones(vec3 position, vec3 normal, Cone* cones) const {
     const auto& clusters = targets_.clusters();
     float total = 0.0F;
     for (std::size_t k = 0; k < clusters.size(); ++k) {
       cones[k] = coneTo(clusters[k], position, normal);
       total += cones[k].one_minus_cos;
     }
+    return total;
+  }
+  /// Per solid angle. @param chosen  the cone that the direction was drawn from, whatever rounding says; kNone: unknown
+  float aimDensity(const Cone* cones, float total, vec3 dir, std::size_t chosen) const {
+    int count = 0;
+    for (std::size_t k = 0; k < targets_.clusters().size(); ++k) {
+      const vec3 chord = dir - cones[k].axis;
+      if (cones[k].one_minus_cos > 0.0F && (k == chosen || 0.5F * dot(chord, chord) <= cones[k].one_minus_cos)) ++count;
+    }
+    return static_cast<float>(count) / (2.0F * kPi * total);
+  }
+  vec3 aim(vec3 position, vec3 normal, vec2 u, float u_choice, float& density) const {
+    Cone cones[EmissionTargets::kMaxClusters];
+    const auto& clusters = targets_.clusters();
+    const float total = fillCones(position, normal, cones);
     if (total <= 0.0F) return normal;
     float rest = u_choice * total;
     std::size_t chosen = 0;
     for (; chosen + 1 < clusters.size() && rest >= cones[chosen].one_minus_cos; ++chosen)
       rest -= cones[chosen].one_minus_cos;
     const vec3 dir = Frame::fromZ(cones[chosen].axis).toWorld(sampleUniformCone(u, cones[chosen].one_minus_cos));
-    int count = 0;
-    for (std::size_t k = 0; k < clusters.size(); ++k) {
-      const vec3 chord = dir - cones[k].axis;
-      if (cones[k].one_minus_cos > 0.0F && (k == chosen || 0.5F * dot(chord, chord) <= cones[k].one_minus_cos)) ++count;
-    }
-    density = static_cast<float>(count) / (2.0F * kPi * total);
+    density = aimDensity(cones, total, dir, chosen);
     return dir;
   }
 
@@ -357,7 +388,8 @@ class EnvironmentEmitter final : public Emitter {
     choice_ = std::make_unique<Distribution1D>(areas);
   }
 
-  EmittedPhoton emit(Sampler& sampler) const override {
+  EmittedPhoton emit(Sampler& sampler, vec3& normal_out) const override {
+    normal_out = vec3(0.0F);
     EmittedPhoton photon;
     const vec2 u_dir = sampler.next2D(), u_place = sampler.next2D();
     const float u_choice = sampler.next1D();
@@ -370,11 +402,7 @@ class EnvironmentEmitter final : public Emitter {
     const vec2 disc = cluster.radius * sampleConcentricDisc(u_place);
     const vec3 on_disc = cluster.centre + disc.x * frame.x + disc.y * frame.y;
     // Discs are chosen by area, so the density is the number of discs here over the area of all.
-    int count = 0;
-    for (const auto& other : clusters) {
-      const vec3 offset = cross(other.centre - on_disc, photon.dir);
-      if (&other == &cluster || dot(offset, offset) <= other.radius * other.radius) ++count;
-    }
+    const int count = countDiscs(on_disc, photon.dir, &cluster);
     const vec3 centre = bounds_.centre();
     const float back = dot(on_disc - centre, photon.dir) + bounds_.radius() * 1.001F;
     photon.origin = on_disc - photon.dir * std::max(back, 0.0F);
@@ -383,6 +411,10 @@ class EnvironmentEmitter final : public Emitter {
           map_.radiance(to) * static_cast<float>(kPi * choice_->total() / (static_cast<double>(count) * pdf_dir));
     return photon;
   }
+  float arrivalDensity(const LightRay& ray) const override {
+    return map_.pdf(-ray.dir) * static_cast<float>(countDiscs(ray.arrival, ray.dir, nullptr)) /
+           static_cast<float>(kPi * choice_->total());
+  }
   EmissionExtent extentOf(const EmittedPhoton& photon) const override {
     const float pdf_dir = map_.pdf(-photon.dir);
     if (!(pdf_dir > 0.0F)) return {};
@@ -390,6 +422,17 @@ class EnvironmentEmitter final : public Emitter {
   }
 
  private:
+  /// Discs that the line through `place` along `dir` meets. @param chosen  meets it, whatever rounding says; may be
+  /// null
+  int countDiscs(vec3 place, vec3 dir, const EmissionTargets::Sphere* chosen) const {
+    int count = 0;
+    for (const EmissionTargets::Sphere& disc : targets_.clusters()) {
+      const vec3 offset = cross(disc.centre - place, dir);
+      if (&disc == chosen || dot(offset, offset) <= disc.radius * disc.radius) ++count;
+    }
+    return count;
+  }
+
   Bounds bounds_;
   const EnvironmentMap& map_;
   const EmissionTargets& targets_;
@@ -465,7 +508,8 @@ std::vector<std::unique_ptr<Emitter>> makeEmitters(const TraceScene& scene, cons
                                                    const LightSet& lights, const EmissionTargets& targets) {
   std::vector<std::unique_ptr<Emitter>> emitters;
   if (targets.empty()) return emitters;
-  for (const Light& light : scene.scene().lights) {
+  for (std::uint32_t i = 0; i < scene.scene().lights.size(); ++i) {
+    const Light& light = scene.scene().lights[i];
     std::unique_ptr<Emitter> emitter;
     if (light.kind == LightKind::kSun) {
       emitter = std::make_unique<SunEmitter>(scene, light, targets);
@@ -473,22 +517,27 @@ std::vector<std::unique_ptr<Emitter>> makeEmitters(const TraceScene& scene, cons
       emitter = std::make_unique<PointEmitter>(light, targets);
       emitter->interior_ = findInterior(scene, light.position);
     }
+    emitter->source_ = i;
     if (luminance(emitter->expectedFlux()) > 0.0F) emitters.push_back(std::move(emitter));
   }
-  const auto addPiloted = [&](std::unique_ptr<Emitter> emitter) {
+  const auto addPiloted = [&](std::unique_ptr<Emitter> emitter, std::uint32_t source) {
+    emitter->source_ = source;
     emitter->expected_flux_ = runPilot(*emitter);
     if (luminance(emitter->expectedFlux()) > 0.0F) emitters.push_back(std::move(emitter));
   };
-  for (const LightSet::MeshLight& light : lights.meshLights()) {
+  for (std::size_t i = 0; i < lights.meshLights().size(); ++i) {
+    const LightSet::MeshLight& light = lights.meshLights()[i];
     auto emitter = std::make_unique<MeshEmitter>(scene, materials, light, targets);
     vec3 p[3];
     scene.triangleCorners(light.instance, 0, p);
     const vec3 normal = normalize(cross(p[1] - p[0], p[2] - p[0]));
     const vec3 middle = (p[0] + p[1] + p[2]) * (1.0F / 3.0F);
     emitter->interior_ = findInterior(scene, middle + normal * (1e-5F * scene.bounds().radius()));
-    addPiloted(std::move(emitter));
+    addPiloted(std::move(emitter), lights.sourceOfMesh(i));
   }
-  if (lights.environment()) addPiloted(std::make_unique<EnvironmentEmitter>(scene, *lights.environment(), targets));
+  if (lights.environment())
+    addPiloted(std::make_unique<EnvironmentEmitter>(scene, *lights.environment(), targets),
+               lights.sourceOfEnvironment());
   return emitters;
 }
 

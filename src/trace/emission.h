@@ -79,13 +79,23 @@ class EmissionTargets {
 class Emitter {
  public:
   virtual ~Emitter() = default;
-  virtual EmittedPhoton emit(Sampler& sampler) const = 0;
+  EmittedPhoton emit(Sampler& sampler) const {
+    vec3 unused;
+    return emit(sampler, unused);
+  }
+  /// @param normal  becomes that of the side of a mesh that it leaves; zero for other lights
+  virtual EmittedPhoton emit(Sampler& sampler, vec3& normal) const = 0;
+  /// Density of photons, were one emitted, at the end of a ray that meets a target: per area perpendicular to it, 1/m²,
+  /// and, of a light with a size, per solid angle as well, 1/(m²·sr). There, flux = radiance / density.
+  virtual float arrivalDensity(const LightRay& ray) const = 0;
   /// @param photon  as it was emitted
   virtual EmissionExtent extentOf(const EmittedPhoton& photon) const = 0;
   /// Flux through the domain, W: exact for punctual lights, estimated from a pilot for the others. For sharing photons
   /// among lights, not for scaling them.
   vec3 expectedFlux() const { return expected_flux_; }
   const std::string& name() const { return name_; }
+  /// Number of the light in the LightSet.
+  std::uint32_t source() const { return source_; }
   /// Media that the light itself is inside of.
   const InteriorList& interior() const { return interior_; }
 
@@ -93,6 +103,7 @@ class Emitter {
   friend std::vector<std::unique_ptr<Emitter>> makeEmitters(const TraceScene&, const MaterialTable&, const LightSet&,
                                                             const EmissionTargets&);
   std::string name_;
+  std::uint32_t source_ = kNone;
   vec3 expected_flux_{0.0F};
   InteriorList interior_;
 };

@@ -96,6 +96,9 @@ std::optional<LightSample> LightSet::sample(vec3 position, float u_choice, vec2 
     s->radiance = environment_->radiance(s->dir);
   }
   if (!s || !(s->pdf > 0.0F)) return std::nullopt;
+  s->source = entry.kind == Kind::kPunctual ? entry.index
+              : entry.kind == Kind::kMesh   ? sourceOfMesh(entry.index)
+                                            : sourceOfEnvironment();
   s->pdf *= entry.probability;
   return s;
 }
@@ -163,6 +166,7 @@ std::optional<LightSample> LightSet::sampleMesh(const MeshLight& light, vec3 pos
   point.instance = light.instance, point.triangle = triangle;
   point.u = barycentrics.y, point.v = barycentrics.z;
   s.radiance = materials_.emission(point, cos_light > 0.0F);
+  s.normal = cos_light > 0.0F ? normal : -normal;
   return s;
 }
 
@@ -173,6 +177,9 @@ LightSet::Met LightSet::metSurface(vec3 vertex, const SurfacePoint& point, vec3 
   const float cos_light = -dot(point.normal_geometric, dir);
   met.radiance = materials_.emission(point, cos_light > 0.0F);
   const vec3 to = point.position - vertex;
+  met.source = sourceOfMesh(index);
+  met.distance = length(to);
+  met.normal = cos_light > 0.0F ? point.normal_geometric : -point.normal_geometric;
   if (cos_light != 0.0F)
     met.pdf =
         static_cast<float>(dot(to, to) / (std::abs(cos_light) * mesh_lights_[index].area)) * mesh_probability_[index];
@@ -185,7 +192,7 @@ LightSet::Met LightSet::metSun(vec3 dir, std::uint32_t which) const {
   // 1 − cos of the angle from half the squared chord: exact for the small angles of a sun.
   const vec3 chord = dir + sun.direction;
   if (0.5F * dot(chord, chord) > one_minus_cos) return {};
-  return {sunRadiance(sun), probability_of_punctual_[which] / (2.0F * kPi * one_minus_cos)};
+  return {sunRadiance(sun), probability_of_punctual_[which] / (2.0F * kPi * one_minus_cos), which};
 }
 
 LightSet::Met LightSet::metSphere(vec3 vertex, const Ray& ray, float t_max, std::uint32_t which) const {
@@ -201,7 +208,38 @@ LightSet::Met LightSet::metSphere(vec3 vertex, const Ray& ray, float t_max, std:
   const float sin2 = std::min(radius_squared / dot(from_vertex, from_vertex), 1.0F);
   const float one_minus_cos = sin2 / (1.0F + std::sqrt(1.0F - sin2));
   return {intensityAlong(light, -ray.dir) / (kPi * radius_squared),
-          probability_of_punctual_[which] / (2.0F * kPi * one_minus_cos)};
+          probability_of_punctual_[which] / (2.0F * kPi * one_minus_cos), which, along};
+}
+
+bool LightSet::isDelta(std::uint32_t source) const {
+  if (source >= probability_of_punctual_.size()) return false;
+  const Light& light = scene_.scene().lights[source];
+  return (light.kind == LightKind::kSun ? light.angle_deg : light.radius) == 0.0F;
+}
+
+bool LightSet::anyMet() const {
+  return !suns_.empty() || !spheres_.empty() || !mesh_lights_.empty() || environment_.has_value();
+}
+
+float LightSet::densityTowards(std::uint32_t source, const LightRay& ray) const {
+  if (source == sourceOfEnvironment()) return environment_probability_ * environment_->pdf(-ray.dir);
+  if (source < probability_of_punctual_.size()) {
+    const float probability = probability_of_punctual_[source];
+    if (isDelta(source)) return probability;
+    const Light& light = scene_.scene().lights[source];
+    if (light.kind == LightKind::kSun) return probability / (2.0F * kPi * static_cast<float>(sunOneMinusCos(light)));
+    const vec3 to_centre = light.position - ray.arrival;
+    const float squared = dot(to_centre, to_centre), radius_squared = light.radius * light.radius;
+    // From inside, `sample` finds nothing.
+    if (squared <= radius_squared) return 0.0F;
+    const float sin2 = radius_squared / squared;
+    return probability * (1.0F + std::sqrt(1.0F - sin2)) / (2.0F * kPi * sin2);
+  }
+  const std::size_t mesh = source - probability_of_punctual_.size();
+  const float cos_light = dot(ray.normal, ray.dir);
+  return cos_light > 0.0F ? static_cast<float>(ray.distance * ray.distance / (cos_light * mesh_lights_[mesh].area)) *
+                                mesh_probability_[mesh]
+                          : 0.0F;
 }
 
 }  // namespace nephroid

@@ -23,6 +23,16 @@ struct LightSample {
   vec3 radiance{0.0F};  ///< W/m²/sr; for delta lights the irradiance on a surface facing it, W/m²
   float pdf = 0.0F;     ///< per solid angle, choice of light included; for delta lights the probability of the choice
   bool delta = false;   ///< cannot be met by chance
+  std::uint32_t source = kNone;  ///< which light: see LightSet::sourceCount
+  vec3 normal{0.0F};             ///< of the side of a mesh that shines here, unit; zero for other lights
+};
+
+/// A straight way from a light: what the densities of light paths depend on.
+struct LightRay {
+  vec3 arrival;        ///< where it ends, world, m
+  vec3 dir;            ///< unit, along the travel of light
+  float distance = 0;  ///< m, from the light; infinite for sun and environment
+  vec3 normal{0.0F};   ///< of the side of a mesh that it leaves, unit; zero for other lights
 };
 
 /// Radiance of a punctual light, W/sr, along `dir` (travel): the spot's cone applied.
@@ -41,6 +51,9 @@ class LightSet {
   struct Met {
     vec3 radiance{0.0F};
     float pdf = 0.0F;
+    std::uint32_t source = kNone;
+    float distance = kInfinity;  ///< m, from the origin of the ray, or the vertex
+    vec3 normal{0.0F};           ///< as in LightSample
   };
   /// @param vertex  where the path last scattered
   Met metSurface(vec3 vertex, const SurfacePoint& point, vec3 dir) const;
@@ -51,7 +64,8 @@ class LightSet {
       const Met met = metSun(dir, i);
       if (met.pdf > 0.0F) visit(met);
     }
-    if (environment_) visit(Met{environment_->radiance(dir), environment_probability_ * environment_->pdf(dir)});
+    if (environment_)
+      visit(Met{environment_->radiance(dir), environment_probability_ * environment_->pdf(dir), sourceOfEnvironment()});
   }
   /// Calls `visit(Met)` for every sphere light that the ray enters before `t_max`. The spheres shine but block nothing,
   /// neither rays nor photons: they stand for a filament, not for a body.
@@ -63,6 +77,18 @@ class LightSet {
       if (met.pdf > 0.0F) visit(met);
     }
   }
+
+  // Lights are numbered: punctual ones as in SceneData::lights, then meshes, then the environment.
+  std::uint32_t sourceCount() const { return sourceOfEnvironment() + 1; }
+  std::uint32_t sourceOfMesh(std::size_t mesh_light) const {
+    return static_cast<std::uint32_t>(probability_of_punctual_.size() + mesh_light);
+  }
+  std::uint32_t sourceOfEnvironment() const { return sourceOfMesh(mesh_lights_.size()); }
+  /// Has no size: cannot be met by chance.
+  bool isDelta(std::uint32_t source) const;
+  bool anyMet() const;
+  /// Density with which `sample(ray.arrival)` finds the light `source` along a ray from it: LightSample::pdf.
+  float densityTowards(std::uint32_t source, const LightRay& ray) const;
 
   const EnvironmentMap* environment() const { return environment_ ? &*environment_ : nullptr; }
 

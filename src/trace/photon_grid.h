@@ -4,6 +4,7 @@
 // sums over a search do not depend on threads.
 #pragma once
 
+#include <bit>
 #include <cmath>
 #include <cstdint>
 #include <span>
@@ -13,6 +14,9 @@
 
 namespace nephroid {
 
+/// Height of a kernel's disc over its radius: thin enough not to look around corners, thick enough for curved ground.
+inline constexpr float kKernelFlatness = 0.3F;
+
 /// What a receiver needs of a photon that ended on it.
 struct GridPhoton {
   vec3 position;  ///< world, m
@@ -20,11 +24,27 @@ struct GridPhoton {
   vec3 flux;      ///< W
 };
 
-class PhotonGrid {
+/// @tparam Photon  has a `position`
+template <class Photon>
+class BasicPhotonGrid {
  public:
-  PhotonGrid() = default;
+  BasicPhotonGrid() = default;
   /// @param radius  of every search, m, > 0
-  PhotonGrid(std::span<const GridPhoton> photons, float radius);
+  BasicPhotonGrid(std::span<const Photon> photons, float radius) : radius_(radius), inverse_cell_(0.5F / radius) {
+    if (photons.empty()) return;
+    const std::uint32_t buckets = std::bit_ceil(static_cast<std::uint32_t>(photons.size()));
+    mask_ = buckets - 1;
+    begin_.assign(buckets + 1, 0);
+    const auto bucketOf = [&](const Photon& p) {
+      const vec3 cell = p.position * inverse_cell_;
+      return hashCell(cellOf(cell.x), cellOf(cell.y), cellOf(cell.z));
+    };
+    for (const Photon& p : photons) ++begin_[bucketOf(p) + 1];
+    for (std::uint32_t b = 0; b < buckets; ++b) begin_[b + 1] += begin_[b];
+    std::vector<std::uint32_t> next(begin_.begin(), begin_.end() - 1);
+    photons_.resize(photons.size());
+    for (const Photon& p : photons) photons_[next[bucketOf(p)]++] = p;
+  }
 
   bool empty() const { return photons_.empty(); }
   float radius() const { return radius_; }
@@ -59,11 +79,13 @@ class PhotonGrid {
     return h & mask_;
   }
 
-  std::vector<GridPhoton> photons_;   ///< bucket by bucket
+  std::vector<Photon> photons_;       ///< bucket by bucket
   std::vector<std::uint32_t> begin_;  ///< bucket count + 1 offsets
   float radius_ = 0.0F, inverse_cell_ = 0.0F;
   std::uint32_t mask_ = 0;
 };
+
+using PhotonGrid = BasicPhotonGrid<GridPhoton>;
 
 /// A first radius that finds about `expected` photons where they are spread evenly over the largest side of their box.
 float chooseGatherRadius(std::span<const GridPhoton> photons, float expected);

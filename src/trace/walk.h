@@ -42,11 +42,23 @@ struct Encounter {
   std::uint32_t rays = 0;    ///< traced on the way
 };
 
+/// Shadow rays end this far before the light, relative to its distance: the light's own surface must not block it.
+inline constexpr float kShadowEnd = 1.0F - 1e-4F;
+
 /// A straight line to a light or the camera.
 struct Sightline {
   Ray ray;
   const Material* medium = nullptr;  ///< in which the line runs; null: vacuum
 };
+
+/// After an event on a surface: notes which solids the path is inside of then. @return false if nested too deep
+inline bool updateInterior(const TraceScene& scene, const Encounter& e, bool transmitted, InteriorList& interior) {
+  if (!e.material->is_solid) return true;
+  const std::uint32_t solid = scene.solidOf(e.point.instance);
+  const Material& material = *e.material->source;
+  return transmitted ? crossInterface(interior, solid, material, e.boundary.entering)
+                     : reflectInside(interior, solid, material, e.boundary.entering);
+}
 
 /// Everything that a path needs to know of the world.
 class Walker {

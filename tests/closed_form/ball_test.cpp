@@ -14,8 +14,8 @@ constexpr std::uint64_t kPhotons = std::uint64_t{1} << 21;
 constexpr std::size_t kBins = 64;
 
 /// Relative L1 of the radial profile.
-double compareProfile(const BallCase& c) {
-  const PlanePicture picture = renderPlane(makeBallScene(c, kSegments), ballView(c, 1024), kPhotons);
+double compareProfile(const BallCase& c, const std::vector<std::string>& settings = {}, int columns = 1024) {
+  const PlanePicture picture = renderPlane(makeBallScene(c, kSegments), ballView(c, columns), kPhotons, 1, settings);
   EXPECT_LE(worstResidual(picture.ledgers), 1e-5);
   const double error = relativeL1(picture.ringMeans(c.view_radius, kBins), ballIrradiance(c, kBins));
   ::testing::Test::RecordProperty("relative_l1", fmt::format("{:.6f}", error));
@@ -29,6 +29,11 @@ TEST(Ball, DrawsTheRadialProfileBeforeItsFocusToTwoPercent) {
 
 TEST(Ball, DrawsTheRadialProfileBehindItsFocusToTwoPercent) {
   EXPECT_LE(compareProfile({.gap = 0.05, .view_radius = 0.1}), 0.02);
+}
+
+TEST(Ball, DrawsTheRadialProfileByVertexConnectionAndMergingToThreePercent) {
+  // Kernels blur the fold.
+  EXPECT_LE(compareProfile({.gap = 0.05, .view_radius = 0.1}, {"estimator=vcm"}, 256), 0.03);
 }
 
 TEST(BallFormula, PutsParaxialRaysIntoTheFocus) {

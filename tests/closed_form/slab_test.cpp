@@ -23,6 +23,13 @@ TEST_P(ClearSlab, TransmitsAllOrdersToATenthOfAPercent) {
 }
 INSTANTIATE_TEST_SUITE_P(Angles, ClearSlab, ::testing::Values(0.0, 30.0, 60.0));
 
+TEST_P(ClearSlab, TransmitsAllOrdersByVertexConnectionAndMergingToATenthOfAPercent) {
+  const SlabCase c{.angle_deg = GetParam()};
+  const PlanePicture picture = renderPlane(makeSlabScene(c), slabView(c), kPhotons, 1, {"estimator=vcm"});
+  EXPECT_NEAR(meanIrradiance(picture).x / slabIrradiance(c).x, 1.0, 1e-3);
+  EXPECT_LE(worstResidual(picture.ledgers), 1e-5);
+}
+
 class ColouredSlab : public ::testing::TestWithParam<double> {};
 
 TEST_P(ColouredSlab, AbsorbsByBeerAndLambertAlongTheBentPathToHalfAPercent) {

@@ -8,6 +8,7 @@
 
 #include "core/assert.h"
 #include "core/parallel.h"
+#include "techniques/layers.h"
 
 namespace nephroid {
 namespace {
@@ -30,6 +31,19 @@ dvec3 sumOf(const std::vector<LayerPlanes>& planes, PlaneOf direction, std::size
 }
 
 }  // namespace
+
+std::vector<std::string> layersWithError(const std::vector<std::string>& asked, double target_error) {
+  const auto isAsked = [&](std::string_view name) {
+    return std::find(asked.begin(), asked.end(), name) != asked.end();
+  };
+  std::vector<std::string> layers;
+  for (const LayerInfo& info : layerInfos()) {
+    const std::string_view erring = erringLayer(info.name);
+    const bool wanted = isAsked(info.name) || (target_error > 0.0 && isAsked(erring));
+    if (!erring.empty() && wanted) layers.emplace_back(erring);
+  }
+  return layers;
+}
 
 BatchSpread::BatchSpread(std::size_t pixels) : closed_(static_cast<int>(pixels), 1), squares_(closed_) {}
 

@@ -49,6 +49,10 @@ struct RelativeError {
   double total() const { return from_eye + from_lights; }
 };
 
+/// Layers whose error has to be estimated: because it is a layer too, or because it ends the render.
+/// @param asked         names of layers  @param target_error  0: none
+std::vector<std::string> layersWithError(const std::vector<std::string>& asked, double target_error);
+
 /// Standard errors of several layers of a film. Memory: 96 bytes a pixel and layer (48 where only one direction adds).
 class ErrorEstimate {
  public:

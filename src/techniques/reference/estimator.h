@@ -4,9 +4,11 @@
 //   footprint   photons, each spread over its footprint (see footprint.h): the least error until photons are many
 //   photon-map  photons gathered by paths from the eye under a kernel that shrinks (progressive photon mapping)
 //   path        paths from the eye alone: shares nothing with the others; needs lights with a size
+//   vcm         all of these by their weights: vertex connection and merging (see vcm/vcm.h)
 //   auto        footprint; light where errors are to be estimated, for a footprint's blur is in no standard error
 //
-// Caustics in mirrors and through glass can be met by paths from the eye alone, so they are gathered by all but `path`.
+// Caustics in mirrors and through glass can be met by paths from the eye alone, so they are gathered by all but `path`
+// and `vcm`.
 #pragma once
 
 #include <map>
@@ -22,7 +24,7 @@
 
 namespace nephroid {
 
-enum class Estimator : std::uint8_t { kLight, kFootprint, kPhotonMap, kPath };
+enum class Estimator : std::uint8_t { kLight, kFootprint, kPhotonMap, kPath, kVcm };
 
 ParamSpec makeEstimatorParam();
 /// The one that a value of the parameter stands for.

@@ -7,6 +7,7 @@
 #include <string_view>
 #include <vector>
 
+#include "core/image/image.h"
 #include "core/math.h"
 #include "techniques/technique.h"
 
@@ -40,6 +41,12 @@ struct LayerNeeds {
   bool emission, direct, caustic, specular, indirect, specular_caustic, irradiance, irradiance_caustic, beauty;
   bool specular_caustic_bias;
   bool geometry;  ///< any of albedo, normal, position, depth, id
+  /// The same without caustics, seen directly or through specular surfaces, on their own.
+  LayerNeeds withoutCaustics() const {
+    LayerNeeds rest = *this;
+    rest.caustic = rest.irradiance_caustic = rest.specular_caustic = rest.specular_caustic_bias = false;
+    return rest;
+  }
   /// Must paths from the eye go on after a first diffuse event?
   bool beyondDiffuse() const { return indirect || irradiance; }
   /// Must paths from the eye follow a first specular event?
@@ -79,6 +86,15 @@ struct LayerPlanes {
   const FilmPlane* from_eye;
   const FilmPlane* from_lights;
 };
+/// What sums of a film are divided by.
+struct FilmCounts {
+  std::uint64_t samples = 0;                    ///< passes from the eye over the whole picture
+  const std::vector<std::uint8_t>& rows_ahead;  ///< by row: 1 where it holds one more
+  std::uint64_t batches = 0;                    ///< of photons
+};
+/// From sums to the picture of one layer that is sampled.
+Image developLayer(const Film& film, std::string_view layer, const FilmCounts& counts);
+
 /// Of a layer that is sampled, or of all that `beauty` is the sum of, in the order of layerInfos(); none for geometry.
 std::vector<LayerPlanes> planesOf(const Film& film, std::string_view layer);
 

@@ -120,6 +120,10 @@ bool LightPath::scatter() {
     return false;
   }
   if (accounted() && weighted != before) roulette_ += dvec3(before) - dvec3(weighted);
+  const bool weighs = trail_.carried() && accounted();
+  if (weighs) trail_.arrive(encounter_.point, state_.ray.dir, bsdf.isEvaluable(EventClass::kSpecular));
+  if (weighs && trail_.connects() && bsdf.isEvaluable(EventClass::kSpecular))
+    context_->tally.vcm_rough.push_back(trail_.vertexAt(surface(), wo, weighted, EventClass::kSpecular));
   if (!bsdf.hasDiffuse()) {
     if (accounted()) ledger_->absorbed += dvec3(rest);
   } else if (stage_ == Stage::kEmitted) {
@@ -127,12 +131,19 @@ bool LightPath::scatter() {
   } else {
     if (stage_ == Stage::kSpecularChain) {
       ledger_->deposited += dvec3(rest);
-      if (context_->keep_deposits)
-        context_->tally.deposits.push_back({encounter_.point.position, state_.ray.dir, weighted});
+      deposit(weighted, wo);
     }
     if (context_->connect_caustics || stage_ != Stage::kSpecularChain) connectToCamera(bsdf, wo);
   }
   return continueWith(bsdf, specular_share, wo);
+}
+
+void LightPath::deposit(vec3 weighted, vec3 wo) {
+  PhotonTally& tally = context_->tally;
+  if (context_->keep_deposits) tally.deposits.push_back({encounter_.point.position, state_.ray.dir, weighted});
+  if (!trail_.carried()) return;
+  tally.vcm_photons.push_back(trail_.photonAt(encounter_.point, wo, weighted));
+  if (trail_.connects()) tally.vcm_ends.push_back(trail_.vertexAt(surface(), wo, weighted, EventClass::kDiffuse));
 }
 
 bool LightPath::continueWith(const Bsdf& bsdf, vec3 specular_share, vec3 wo) {
@@ -181,6 +192,7 @@ bool LightPath::scatterSpecular(const Bsdf& bsdf, vec3 carried, float p_class) {
   }
   flux_ = unweighted;
   if (!s->pass && stage_ == Stage::kEmitted) stage_ = Stage::kSpecularChain;
+  if (trail_.carried() && accounted()) trail_.scatter(surface(), -state_.ray.dir, *s, p_class);
   bendFootprint(*s, p_class);
   return leave(*s);
 }
@@ -212,15 +224,9 @@ bool LightPath::scatterDiffuse(const Bsdf& bsdf, float p_class, vec3 wo) {
 }
 
 bool LightPath::leave(const BsdfSample& s) {
-  if (encounter_.material->is_solid) {
-    const std::uint32_t solid = context_->world.scene.solidOf(encounter_.point.instance);
-    const Material& material = *encounter_.material->source;
-    const bool entering = encounter_.boundary.entering;
-    if (!(s.transmitted ? crossInterface(state_.interior, solid, material, entering)
-                        : reflectInside(state_.interior, solid, material, entering))) {
-      lose(LossReason::kInteriorOverflow, flux());
-      return false;
-    }
+  if (!updateInterior(context_->world.scene, encounter_, s.transmitted, state_.interior)) {
+    lose(LossReason::kInteriorOverflow, flux());
+    return false;
   }
   state_.ray = Ray{offsetOrigin(encounter_.point, s.dir), s.dir};
   return bounce_ < kRouletteStart || survives();
@@ -248,7 +254,9 @@ void LightPath::connectToCamera(const Bsdf& bsdf, vec3 wo) {
   const bool same_side = (cos_camera > 0.0F) == encounter_.boundary.entering;
   const Material* medium = same_side ? encounter_.boundary.from : encounter_.boundary.to;
   const Ray line{offsetOrigin(encounter_.point, c->dir), c->dir, c->distance};
-  const float scale = std::abs(cos_camera) * bsdf.shadingCosineRatio(wo) * c->importance;
+  const bool weighs = trail_.carried() && stage_ == Stage::kSpecularChain;
+  const float weight = weighs ? trail_.weighSeenAt(surface(), wo, c->dir, c->importance) : 1.0F;
+  const float scale = std::abs(cos_camera) * bsdf.shadingCosineRatio(wo) * c->importance * weight;
   const vec3 irradiance = same_side ? flux() * scale : vec3(0.0F);
   const Splat splat{static_cast<std::uint32_t>(c->y * camera.width() + c->x), stage_ == Stage::kSpecularChain,
                     flux() * value.f * scale, irradiance};

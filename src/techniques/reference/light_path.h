@@ -8,6 +8,7 @@
 #include "techniques/reference/footprint.h"
 #include "techniques/reference/footprint_splat.h"
 #include "techniques/reference/photon_tally.h"
+#include "techniques/reference/vcm/light_trail.h"
 #include "techniques/reference/world.h"
 #include "trace/bsdf.h"
 
@@ -52,12 +53,18 @@ struct LightPathContext {
   FootprintScale spread;  ///< of footprints; of caustics, never of what they light in turn
   PhotonTally& tally;
   CameraConnections& connections;
+  const VcmTechniques* vcm = nullptr;  ///< null: photons carry no weights
 };
 
 /// Trace `ray()` and tell `arrive` what it met, again and again, until that says the photon has ended.
 class LightPath {
  public:
   LightPath(const LightPathContext& context, const Emitter& emitter, const EmittedPhoton& photon, Sampler sampler);
+
+  /// From its light on it carries the weights of the context's techniques. @param normal  as Emitter::emit says
+  void carryWeights(const Emitter& emitter, vec3 normal) {
+    trail_.begin(context_->vcm, emitter, state_.ray.origin, normal);
+  }
 
   bool alive() const { return alive_; }
   const Ray& ray() const { return state_.ray; }
@@ -80,7 +87,9 @@ class LightPath {
   bool scatterDiffuse(const Bsdf& bsdf, float p_class, vec3 wo);
   bool leave(const BsdfSample& s);
   bool survives();
+  void deposit(vec3 weighted, vec3 wo);
   void connectToCamera(const Bsdf& bsdf, vec3 wo);
+  VcmSurface surface() const { return VcmSurface::ofEncounter(encounter_, context_->world.options.specular_alpha); }
 
   const LightPathContext* context_;
   Ledger* ledger_;
@@ -94,6 +103,7 @@ class LightPath {
   vec3 emitted_;
   dvec3 roulette_{0.0};
   Footprint footprint_;
+  VcmTrail trail_;
 };
 
 }  // namespace nephroid

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 
 #include "techniques/reference/light_path.h"
 
@@ -14,7 +15,10 @@ constexpr std::size_t kGroupPhotons = 32;
 /// Traces photons in groups. Sums are in an order that depends on the photons alone, never on threads.
 class GroupTracer {
  public:
-  GroupTracer(const LightPathContext& context, const Emitter& emitter) : context_(context), emitter_(emitter) {}
+  /// @param normal_of  of the light where a photon left it, by its index; asked where photons carry weights
+  GroupTracer(const LightPathContext& context, const Emitter& emitter,
+              const std::function<vec3(std::uint64_t)>& normal_of)
+      : context_(context), emitter_(emitter), normal_of_(normal_of) {}
 
   /// Traces photons [begin, end) of a wave's order, at most kGroupPhotons.
   void trace(const PhotonWave& wave, std::size_t begin, std::size_t end) {
@@ -22,6 +26,7 @@ class GroupTracer {
     live_.clear();
     for (std::size_t i = begin; i < end; ++i) {
       group_.emplace_back(context_, emitter_, wave[i].emitted, wave[i].sampler);
+      if (context_.vcm) group_.back().carryWeights(emitter_, normal_of_(wave.indexOf(i)));
       // Tracing a group drives all else out of the cache: the photons of the next are fetched meanwhile.
       wave.prefetch(i + kGroupPhotons);
     }
@@ -44,6 +49,7 @@ class GroupTracer {
 
   const LightPathContext& context_;
   const Emitter& emitter_;
+  const std::function<vec3(std::uint64_t)>& normal_of_;
   std::vector<LightPath> group_;
   std::vector<LightPath*> live_;  ///< into group_
   std::vector<const Ray*> rays_;  ///< by live path
@@ -82,6 +88,14 @@ Sampler LightTracer::samplerOf(std::size_t emitter, std::uint64_t photon) const 
   return Sampler(world_.options.seed, stream, static_cast<std::uint32_t>(photon));
 }
 
+vec3 LightTracer::lightNormalOf(std::size_t emitter, std::uint64_t photon) const {
+  // Emitted once more: it has no room in what is kept of a photon.
+  Sampler sampler = samplerOf(emitter, photon);
+  vec3 normal;
+  emitters_[emitter]->emit(sampler, normal);
+  return normal;
+}
+
 void LightTracer::emit(std::size_t emitter, std::uint32_t begin, std::uint32_t end, PhotonWave& wave,
                        PhotonTally& tally) const {
   const PhotonOrder order(targets_->bounds());
@@ -103,8 +117,9 @@ void LightTracer::trace(std::size_t emitter, const PhotonWave& wave, std::uint32
   CameraConnections connections(world_.walker, view_, tally);
   const LightPathContext context{world_,         is_target_,        continue_after_diffuse_,
                                  keep_deposits_, connect_caustics_, view_ ? spread : FootprintScale{},
-                                 tally,          connections};
-  GroupTracer group(context, *emitters_[emitter]);
+                                 tally,          connections,       vcm_};
+  const std::function<vec3(std::uint64_t)> normal_of = [&](std::uint64_t p) { return lightNormalOf(emitter, p); };
+  GroupTracer group(context, *emitters_[emitter], normal_of);
   for (std::size_t i = begin; i < end; i += kGroupPhotons)
     group.trace(wave, i, std::min<std::size_t>(i + kGroupPhotons, end));
   connections.flush();

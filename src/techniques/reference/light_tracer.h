@@ -15,6 +15,7 @@
 #include "techniques/reference/footprint_splat.h"
 #include "techniques/reference/photon_tally.h"
 #include "techniques/reference/photon_wave.h"
+#include "techniques/reference/vcm/techniques.h"
 #include "techniques/reference/world.h"
 
 namespace nephroid {
@@ -26,6 +27,11 @@ class LightTracer {
   LightTracer(const ReferenceWorld& world, bool continue_after_diffuse, bool keep_deposits = false);
   /// From now on caustics (L S⁺ D E) are left to those who gather deposits; what they light in turn is not.
   void leaveCausticsToGathering() { connect_caustics_ = false; }
+  /// From now on photons carry weights of vertex connection and merging, and leave their vertices in the tally.
+  /// @param techniques  must outlive all that is traced
+  void carryWeights(const VcmTechniques* techniques) { vcm_ = techniques; }
+  /// What photons are aimed at, by instance.
+  const std::vector<bool>& targets() const { return is_target_; }
 
   std::span<const std::unique_ptr<Emitter>> emitters() const { return emitters_; }
   /// Photons of a batch for each emitter, by flux, at least one each; sums to `total` or a little more.
@@ -51,10 +57,12 @@ class LightTracer {
 
  private:
   Sampler samplerOf(std::size_t emitter, std::uint64_t photon) const;
+  vec3 lightNormalOf(std::size_t emitter, std::uint64_t photon) const;
 
   const ReferenceWorld& world_;
   bool continue_after_diffuse_, keep_deposits_, connect_caustics_ = true;
   const ReceiverView* view_ = nullptr;
+  const VcmTechniques* vcm_ = nullptr;
   std::vector<bool> is_target_;
   std::unique_ptr<EmissionTargets> targets_;
   std::vector<std::unique_ptr<Emitter>> emitters_;

@@ -10,11 +10,6 @@ namespace {
 
 /// Events before Russian roulette begins: glass objects need a handful to be seen through.
 constexpr int kRouletteStart = 6;
-/// Shadow rays end this far before the light, relative to its distance: the light's own surface must not block it.
-constexpr float kShadowEnd = 1.0F - 1e-4F;
-
-/// Height of the kernel's disc over its radius: thin enough not to look around corners, thick enough for curved ground.
-constexpr float kKernelFlatness = 0.3F;
 
 float powerHeuristic(float pdf, float other) {
   if (!std::isfinite(pdf)) return 1.0F;
@@ -26,11 +21,12 @@ float powerHeuristic(float pdf, float other) {
 class EyePath {
  public:
   EyePath(const ReferenceWorld& world, const LayerNeeds& needs, const PhotonGrid* caustics, bool gather_direct,
-          Film& film, PathCounters& counters, std::size_t pixel, Sampler sampler)
+          bool leave_caustics, Film& film, PathCounters& counters, std::size_t pixel, Sampler sampler)
       : world_(world),
         needs_(needs),
         caustics_(caustics),
         gather_direct_(gather_direct),
+        leave_caustics_(leave_caustics),
         film_(film),
         counters_(counters),
         pixel_(pixel),
@@ -124,7 +120,7 @@ class EyePath {
   }
   bool isWanted(const PathClass& c) const {
     if (world_.options.light_tracing && c.isLightTraced()) return false;
-    if (caustics_ && c.isSpecularCaustic()) return false;
+    if (leave_caustics_ && c.isSpecularCaustic()) return false;
     if (c.firstIsDiffuse() && (needs_.irradiance || needs_.irradiance_caustic)) return true;
     return mayContribute(c) || c.layer() == PathLayer::kDirect;
   }
@@ -171,7 +167,7 @@ class EyePath {
       previous_is_delta_ = s->delta;
       previous_pdf_ = p_class * s->pdf;
     }
-    if (!updateInterior(s->transmitted)) return false;
+    if (!updateInterior(world_.scene, encounter_, s->transmitted, state_.interior)) return false;
     state_.ray = Ray{offsetOrigin(encounter_.point, s->dir), s->dir};
     return survives();
   }
@@ -184,15 +180,6 @@ class EyePath {
       irradiance_throughput_ = vec3(s.delta || s.pdf <= 0.0F ? 0.0F : std::max(cos_theta, 0.0F) / (s.pdf * p_class));
     }
     return class_.count() < world_.options.max_bounces && mayContribute(class_);
-  }
-
-  bool updateInterior(bool transmitted) {
-    if (!encounter_.material->is_solid) return true;
-    const std::uint32_t solid = world_.scene.solidOf(encounter_.point.instance);
-    const Material& material = *encounter_.material->source;
-    const bool entering = encounter_.boundary.entering;
-    return transmitted ? crossInterface(state_.interior, solid, material, entering)
-                       : reflectInside(state_.interior, solid, material, entering);
   }
 
   bool survives() {
@@ -213,7 +200,7 @@ class EyePath {
   void add(const PathClass& path, vec3 radiance, vec3 irradiance, bool gathered = false) {
     if (!gathered) {
       if (world_.options.light_tracing && path.isLightTraced()) return;
-      if (caustics_ && path.isSpecularCaustic()) return;
+      if (leave_caustics_ && path.isSpecularCaustic()) return;
     }
     radiance *= state_.hero.weight;
     irradiance *= state_.hero.weight;
@@ -250,6 +237,7 @@ class EyePath {
   const LayerNeeds& needs_;
   const PhotonGrid* caustics_;
   bool gather_direct_;
+  bool leave_caustics_;  ///< L S⁺ D S⁺ E is gathered here, or made elsewhere
   Film& film_;
   PathCounters& counters_;
   std::size_t pixel_;
@@ -271,7 +259,7 @@ void PathTracer::tracePath(int x, int y, std::uint32_t sample, Film& film, PathC
   const auto pixel = static_cast<std::size_t>(y) * film.width + x;
   Sampler sampler(world_.options.seed, static_cast<std::uint32_t>(pixel), sample);
   const vec2 jitter = sampler.next2D();
-  EyePath path(world_, needs_, caustics_, gather_direct_, film, counters, pixel, sampler);
+  EyePath path(world_, needs_, caustics_, gather_direct_, leave_caustics_, film, counters, pixel, sampler);
   path.trace(vec2(static_cast<float>(x), static_cast<float>(y)) + jitter);
 }
 

@@ -30,7 +30,10 @@ class PathTracer {
   void gatherFrom(const PhotonGrid* grid, bool direct_too) {
     caustics_ = grid;
     gather_direct_ = direct_too;
+    leave_caustics_ = true;
   }
+  /// From now on L S⁺ D S⁺ E is left to others.
+  void leaveCaustics() { leave_caustics_ = true; }
   /// One path through pixel (x, y), added to the film. Safe from any thread as long as no two share a pixel.
   void tracePath(int x, int y, std::uint32_t sample, Film& film, PathCounters& counters) const;
 
@@ -38,7 +41,7 @@ class PathTracer {
   const ReferenceWorld& world_;
   const LayerNeeds& needs_;
   const PhotonGrid* caustics_ = nullptr;
-  bool gather_direct_ = false;
+  bool gather_direct_ = false, leave_caustics_ = false;
 };
 
 }  // namespace nephroid

@@ -6,6 +6,7 @@
 
 #include "core/math.h"
 #include "techniques/ledger.h"
+#include "techniques/reference/vcm/light_vertex.h"
 #include "trace/photon_grid.h"
 
 namespace nephroid {
@@ -40,6 +41,8 @@ struct PhotonTally {
   std::uint64_t not_finite = 0;
   std::vector<Splat> splats;
   std::vector<FootprintSplat> footprints;
+  std::vector<VcmPhoton> vcm_photons;               ///< where they ended, for vertex connection and merging
+  std::vector<VcmLightVertex> vcm_rough, vcm_ends;  ///< interfaces on the way, and ends, that may be connected
   std::vector<GridPhoton> deposits;  ///< caustic photons where they ended, if they are kept; flux × emitted count
 };
 

@@ -37,6 +37,8 @@ class PhotonWave {
   /// Photons that were put, in order. Only after `close`.
   std::uint32_t size() const { return static_cast<std::uint32_t>(order_.size()); }
   const Photon& operator[](std::size_t i) const { return photons_[order_[i]]; }
+  /// Of such a photon, among all of its light.
+  std::uint64_t indexOf(std::size_t i) const { return first_ + order_[i]; }
   /// Photons are read in an order that no cache foresees: ask for one some time before it is wanted.
   void prefetch(std::size_t i) const {
     if (i < order_.size()) __builtin_prefetch(&photons_[order_[i]]);

@@ -23,6 +23,7 @@
 #include "techniques/reference/geometry_layers.h"
 #include "techniques/reference/path_tracer.h"
 #include "techniques/reference/photon_batch.h"
+#include "techniques/reference/vcm/vcm.h"
 #include "techniques/settings.h"
 
 namespace nephroid {
@@ -50,22 +51,9 @@ constexpr std::uint64_t kFirstErrorBatches = 8;
 using Clock = std::chrono::steady_clock;
 double secondsSince(Clock::time_point start) { return std::chrono::duration<double>(Clock::now() - start).count(); }
 
-/// Layers whose error has to be estimated: because it is a layer too, or because it ends the render.
-std::vector<std::string> layersWithError(const RenderSettings& settings) {
-  const auto asked = [&](std::string_view name) {
-    return std::find(settings.layers.begin(), settings.layers.end(), name) != settings.layers.end();
-  };
-  std::vector<std::string> layers;
-  for (const LayerInfo& info : layerInfos()) {
-    const std::string_view erring = erringLayer(info.name);
-    const bool wanted = asked(info.name) || (settings.target_error > 0.0 && asked(erring));
-    if (!erring.empty() && wanted) layers.emplace_back(erring);
-  }
-  return layers;
-}
-
 Estimator estimatorOf(const RenderSettings& settings) {
-  return chooseEstimator(settings.params.getString("estimator"), !layersWithError(settings).empty());
+  return chooseEstimator(settings.params.getString("estimator"),
+                         !layersWithError(settings.layers, settings.target_error).empty());
 }
 
 /// One progressive render.
@@ -82,18 +70,23 @@ class ReferenceRender {
         needs_(settings.layers),
         world_(scene, camera, settings.width, settings.height, makeOptions(settings)),
         film_(settings.width, settings.height, needs_),
-        errors_(film_, layersWithError(settings)),
-        path_tracer_(world_, needs_),
+        errors_(film_, layersWithError(settings.layers, settings.target_error)),
+        path_needs_(estimator_ == Estimator::kVcm ? needs_.withoutCaustics() : needs_),
+        path_tracer_(world_, path_needs_),
         row_done_(static_cast<std::size_t>(settings.height), 0) {
-    const bool from_lights = world_.options.light_tracing;
+    const bool from_lights = world_.options.light_tracing, connects_and_merges = estimator_ == Estimator::kVcm;
+    if (connects_and_merges) checkVcm(scene, !errors_.empty());
     const bool gather_direct = estimator_ == Estimator::kPhotonMap && (needs_.caustic || needs_.irradiance_caustic);
-    const bool gather = from_lights && (gather_direct || needs_.throughSpecular());
-    if ((from_lights && needs_.lightTraced()) || gather)
+    const bool photons_reach_eye = from_lights && (gather_direct || needs_.throughSpecular());
+    const bool gather = photons_reach_eye && !connects_and_merges;
+    if ((from_lights && needs_.lightTraced()) || photons_reach_eye)
       light_tracer_ = std::make_unique<LightTracer>(world_, needs_.indirect || needs_.irradiance, gather);
     if (light_tracer_ && light_tracer_->emitters().empty()) light_tracer_.reset();
     gather_ = gather && light_tracer_;
     if (gather_) path_tracer_.gatherFrom(&caustics_, gather_direct);
     if (light_tracer_ && gather_direct) light_tracer_->leaveCausticsToGathering();
+    if (connects_and_merges) path_tracer_.leaveCaustics();
+    if (connects_and_merges && light_tracer_) vcm_ = std::make_unique<Vcm>(world_, *light_tracer_, needs_);
     if (light_tracer_) shareLedgers();
     if (settings.target_error > 0.0 && errors_.empty())
       throw UsageError("a target error needs a layer that converges, such as beauty; those asked for are exact");
@@ -143,10 +136,17 @@ class ReferenceRender {
     constexpr std::uint64_t kUnlimited = std::uint64_t{1} << 62;
     samples_budget_ = settings_.samples ? settings_.samples : open_ended ? kUnlimited : kDefaultSamples;
     photons_budget_ = settings_.photons ? settings_.photons : open_ended ? kUnlimited : kDefaultPhotons;
-    const bool caustics_from_eye = estimator_ == Estimator::kPath || estimator_ == Estimator::kPhotonMap;
+    const bool caustics_from_eye = estimator_ != Estimator::kLight && estimator_ != Estimator::kFootprint;
     if (!needs_.eyeTraced(caustics_from_eye)) samples_budget_ = 0;
     if (!light_tracer_) photons_budget_ = 0;
-    if (light_tracer_) makePhotonBatch(chooseBatchPhotons(photons_budget_ < kUnlimited));
+    if (vcm_) {
+      const auto pixels = static_cast<std::uint64_t>(settings_.width) * static_cast<std::uint64_t>(settings_.height);
+      const auto schedule = VcmSchedule::choose(samples_budget_, open_ended ? 0 : photons_budget_, pixels);
+      vcm_->setSchedule(schedule);
+      makePhotonBatch(schedule.batch_photons);
+    } else if (light_tracer_) {
+      makePhotonBatch(chooseBatchPhotons(photons_budget_ < kUnlimited));
+    }
     error_batch_passes_ = std::clamp<std::uint64_t>(samples_budget_ / kErrorBatches, 1, kErrorBatchPasses);
   }
 
@@ -163,14 +163,18 @@ class ReferenceRender {
     photon_batch_ = std::make_unique<PhotonBatch>(*light_tracer_, photons, settings_.width, settings_.height);
     if (estimator_ == Estimator::kFootprint && needs_.lightTraced())
       footprints_.apply(world_, *light_tracer_, *photon_batch_);
+    if (vcm_) vcm_->begin(*photon_batch_, settings_.width, settings_.height);
   }
 
   bool stopped() const { return stop_ && stop_->requested(); }
   bool timeIsUp() const { return settings_.seconds > 0 && secondsSince(start_) >= settings_.seconds; }
   bool samplesLeft() const { return samples_done_ < samples_budget_; }
-  bool photonsLeft() const { return photons_done_ < photons_budget_; }
+  bool photonsLeft() const {
+    return vcm_ ? batches_done_ < vcm_->batchesFor(samples_budget_) : photons_done_ < photons_budget_;
+  }
   bool finished() const {
     if (!samplesLeft() && !photonsLeft()) return true;
+    if (vcm_ && batches_done_ != vcm_->batchesFor(samples_done_)) return false;
     // Time may end a render only when every layer has something in it.
     const bool something = (samples_budget_ == 0 || samples_done_ > 0) && (photons_budget_ == 0 || photons_done_ > 0);
     if (!something) return false;
@@ -194,6 +198,7 @@ class ReferenceRender {
     }
   }
   bool photonsAreNext() const {
+    if (vcm_) return batches_done_ < vcm_->batchesFor(samples_done_ + 1);
     if (!photonsLeft() || !samplesLeft()) return photonsLeft();
     // What is gathered must have been emitted; otherwise the picture comes first.
     if (samples_done_ == 0) return gather_ && photons_done_ == 0;
@@ -226,7 +231,10 @@ class ReferenceRender {
     parallelFor(row_done_.size(), [&](std::size_t row) {
       if (row_done_[row] || (stopped() && samples_done_ > 0)) return;
       const int y = static_cast<int>(row);
-      for (int x = 0; x < settings_.width; ++x) path_tracer_.tracePath(x, y, sample, film_, rows[row]);
+      for (int x = 0; x < settings_.width; ++x) {
+        if (path_needs_.eyeTraced(!vcm_)) path_tracer_.tracePath(x, y, sample, film_, rows[row]);
+        if (vcm_) vcm_->tracePath(x, y, sample, film_, rows[row]);
+      }
       row_done_[row] = 1;
     });
     for (const PathCounters& row : rows) path_rays_ += row.rays, not_finite_ += row.not_finite;
@@ -249,7 +257,9 @@ class ReferenceRender {
   }
 
   void tracePhotons() {
+    if (vcm_) vcm_->prepareBatch(batches_done_);
     if (!photon_batch_->trace(batches_done_, [&] { return stopped(); })) return;
+    if (vcm_) vcm_->takeBatch(batches_done_, *photon_batch_);
     photon_batch_->visitSplats([&](const Splat& splat, std::uint32_t pixel, std::span<const float> weights) {
       addSplat(splat, pixel, weights);
     });
@@ -312,13 +322,15 @@ class ReferenceRender {
 
   /// What must be the same where a render goes on. Budgets are not among it: a finished render can be given more.
   CheckpointFacts describeIdentity() const {
-    CheckpointFacts facts{{"version", std::string(version())},
-                          {"scene", fmt::format("{:016x} by its content", fingerprintScene(world_.scene.scene()))},
-                          {"camera", fmt::format("{:016x} by its content", fingerprintCamera(camera_))},
-                          {"size", fmt::format("{}x{}", settings_.width, settings_.height)},
-                          {"seed", std::to_string(settings_.seed)},
-                          {"list of layers", fmt::format("{}", fmt::join(settings_.layers, ","))},
-                          {"list of estimated errors", fmt::format("{}", fmt::join(layersWithError(settings_), ","))}};
+    CheckpointFacts facts{
+        {"version", std::string(version())},
+        {"scene", fmt::format("{:016x} by its content", fingerprintScene(world_.scene.scene()))},
+        {"camera", fmt::format("{:016x} by its content", fingerprintCamera(camera_))},
+        {"size", fmt::format("{}x{}", settings_.width, settings_.height)},
+        {"seed", std::to_string(settings_.seed)},
+        {"list of layers", fmt::format("{}", fmt::join(settings_.layers, ","))},
+        {"list of estimated errors",
+         fmt::format("{}", fmt::join(layersWithError(settings_.layers, settings_.target_error), ","))}};
     for (const ParamSpec& spec : settings_.params.specs())
       facts.emplace_back("parameter " + spec.name, settings_.params.toText(spec.name));
     return facts;
@@ -328,6 +340,7 @@ class ReferenceRender {
   template <class State>
   void visitState(State& state) {
     state.value(batch_photons_);
+    if (vcm_) vcm_->visitState(state);
     film_.visitPlanes([&](FilmPlane& plane) { state.values(plane.values()); });
     errors_.visitState(state);
     state.values(std::span(row_done_));
@@ -359,11 +372,17 @@ class ReferenceRender {
       throw InputError(
           fmt::format("{}: holds other sums than this render has; delete it to begin anew", settings_.checkpoint.path));
     if (light_tracer_) makePhotonBatch(batch_photons_);
-    if (gather_ && batches_done_ > 0 && photon_batch_->trace(batches_done_ - 1, [&] { return stopped(); }))
-      replaceCaustics(collectDeposits());
+    if ((gather_ || vcm_) && batches_done_ > 0) retraceLastBatch();
     if (settings_.target_error > 0.0) error_ = errors_.worst();
     result.notes.push_back(fmt::format("went on from {} with {} samples, {:.1f} M photons", settings_.checkpoint.path,
                                        samples_done_, static_cast<double>(photons_done_) * 1e-6));
+  }
+
+  void retraceLastBatch() {
+    if (vcm_) vcm_->prepareBatch(batches_done_ - 1);
+    if (!photon_batch_->trace(batches_done_ - 1, [&] { return stopped(); })) return;
+    if (vcm_) vcm_->takeBatch(batches_done_ - 1, *photon_batch_);
+    if (gather_) replaceCaustics(collectDeposits());
   }
 
   void shareLedgers() {
@@ -404,29 +423,8 @@ class ReferenceRender {
       else if (const std::string_view erring = erringLayer(name); !erring.empty())
         result.image.layers.push_back({name, errors_.standardError(erring, samples_done_, batches_done_)});
       else
-        result.image.layers.push_back({name, developLayer(name)});
+        result.image.layers.push_back({name, developLayer(film_, name, {samples_done_, row_done_, batches_done_})});
     }
-  }
-
-  Image developLayer(std::string_view name) const {
-    const std::vector<LayerPlanes> parts = planesOf(film_, name);
-    Image image(settings_.width, settings_.height, 3);
-    const double by_batches = batches_done_ > 0 ? 1.0 / static_cast<double>(batches_done_) : 0.0;
-    for (std::size_t pixel = 0; pixel < image.pixels.size() / 3; ++pixel) {
-      const std::size_t row = pixel / static_cast<std::size_t>(settings_.width);
-      const std::uint64_t samples = samples_done_ + row_done_[row];
-      const double by_samples = samples > 0 ? 1.0 / static_cast<double>(samples) : 0.0;
-      vec3 sum(0.0F);
-      for (const LayerPlanes& part : parts) {
-        // Each layer is rounded to float before the sum, so that the files' layers add up to the files' beauty.
-        dvec3 value(0.0);
-        if (part.from_eye && part.from_eye->active()) value += part.from_eye->at(pixel) * by_samples;
-        if (part.from_lights && part.from_lights->active()) value += part.from_lights->at(pixel) * by_batches;
-        sum += vec3(value);
-      }
-      image.setRgb(static_cast<int>(pixel % settings_.width), static_cast<int>(row), sum);
-    }
-    return image;
   }
 
   void describe(RenderResult& result) {
@@ -447,7 +445,7 @@ class ReferenceRender {
     metadata["seed"] = std::to_string(settings_.seed);
     metadata["samples"] = std::to_string(samples_done_);
     metadata["photons"] = std::to_string(photons_done_);
-    for (const std::string& layer : layersWithError(settings_))
+    for (const std::string& layer : layersWithError(settings_.layers, settings_.target_error))
       metadata["estimated_relmse." + layer] = fmt::format("{:.4g}", errors_.relMse(layer).total());
     for (const ParamSpec& spec : settings_.params.specs())
       metadata["set." + spec.name] = settings_.params.toText(spec.name);
@@ -464,7 +462,7 @@ class ReferenceRender {
           fmt::format("caustics of '{}': each photon spread over its footprint, overlap {:g} N^(1/3)",
                       light_tracer_->emitters()[e]->name(), footprints_.overlaps[e]));
     if (any_delta && needs_.throughSpecular())
-      result.notes.emplace_back(gather_ || !light_tracer_
+      result.notes.emplace_back(gather_ || vcm_ || !light_tracer_
                                     ? "light of sources without a size that returns through mirrors or glass after two "
                                       "or more diffuse bounces is missing"
                                     : "caustics in mirrors and through glass are missing under lights without a size: "
@@ -473,7 +471,7 @@ class ReferenceRender {
       result.notes.emplace_back("estimator=path finds no caustic of lights without a size");
     if (!errors_.empty() && errors_.batches() < 2)
       result.notes.emplace_back("standard errors are infinite: they take two batches at least; raise the budget");
-    if (needs_.specular_caustic_bias && !gather_)
+    if (needs_.specular_caustic_bias && !gather_ && !vcm_)
       result.notes.emplace_back("specular_caustic_bias is black: nothing is gathered under a kernel");
     if (not_finite_ > 0)
       result.notes.push_back(fmt::format("{} path contributions were not finite and were dropped", not_finite_));
@@ -497,10 +495,12 @@ class ReferenceRender {
   ReferenceWorld world_;
   Film film_;
   ErrorEstimate errors_;
+  LayerNeeds path_needs_;  ///< of `path_tracer_`
   PathTracer path_tracer_;
   std::unique_ptr<LightTracer> light_tracer_;
   FootprintSpread footprints_;
   std::unique_ptr<PhotonBatch> photon_batch_;
+  std::unique_ptr<Vcm> vcm_;
   std::vector<Ledger> ledgers_;
   std::vector<Layer> geometry_;
   std::vector<StageTime> stages_;

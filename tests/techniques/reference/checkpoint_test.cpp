@@ -71,6 +71,7 @@ struct Case {
   std::string name;
   std::vector<std::string> layers;
   double target_error = 0;
+  std::string estimator = "auto";
 };
 
 class Resumed : public ::testing::TestWithParam<Case> {};
@@ -80,18 +81,19 @@ TEST_P(Resumed, GivesThePixelsOfAnUninterruptedRender) {
   const SceneData scene = makeScene();
   RenderSettings settings = makeSettings(12, 12, 40'000, GetParam().layers);
   settings.target_error = GetParam().target_error;
+  settings.params.set("estimator", GetParam().estimator);
   const RenderResult whole = test::renderReference(scene, scene.cameras[0], settings);
   expectSame(renderInPieces(scene, settings, (folder / "often").string(), 1), whole);
   expectSame(renderInPieces(scene, settings, (folder / "seldom").string(), 5), whole);
 }
 
-INSTANTIATE_TEST_SUITE_P(Layers, Resumed,
-                         ::testing::Values(Case{"all", {"beauty", "specular_caustic", "irradiance", "albedo"}},
-                                           Case{"eye", {"direct"}}, Case{"lights", {"caustic"}},
-                                           Case{"errors",
-                                                {"beauty_error", "specular_caustic_error", "specular_caustic_bias"}},
-                                           Case{"target", {"beauty"}, 0.3}),
-                         [](const auto& tested) { return tested.param.name; });
+INSTANTIATE_TEST_SUITE_P(
+    Layers, Resumed,
+    ::testing::Values(Case{"all", {"beauty", "specular_caustic", "irradiance", "albedo"}}, Case{"eye", {"direct"}},
+                      Case{"lights", {"caustic"}},
+                      Case{"errors", {"beauty_error", "specular_caustic_error", "specular_caustic_bias"}},
+                      Case{"target", {"beauty"}, 0.3}, Case{"vcm", {"beauty", "specular_caustic"}, 0, "vcm"}),
+    [](const auto& tested) { return tested.param.name; });
 
 TEST(Checkpoint, OfAPassThatWasCutShortKeepsItsRows) {
   const testing::ScratchFolder folder;
