@@ -83,9 +83,13 @@ std::vector<Imath::half> convertToHalf(const Image& image) {
   return values;
 }
 
+/// Of 1 to 9: noise does not compress, and more only takes time.
+constexpr int kZipLevel = 1;
+
 Imf::Header makeHeader(const LayeredImage& image, std::span<const ChannelSource> channels) {
   Imf::Header header(image.width, image.height);
   header.compression() = Imf::ZIP_COMPRESSION;
+  header.zipCompressionLevel() = kZipLevel;
   for (const ChannelSource& channel : channels)
     header.channels().insert(channel.name, Imf::Channel(channel.half ? Imf::HALF : Imf::FLOAT));
   for (const auto& [key, value] : image.metadata)

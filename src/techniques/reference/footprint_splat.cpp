@@ -11,7 +11,7 @@ constexpr float kMostShare = 0.5F;
 /// Least half-axis of a kernel times the cube root of the photons, pixels: half a pixel at 100 000.
 constexpr double kLeastRadius = 25.0;
 /// Up to so many photons per pixel of the picture, spreading takes more noise away than it adds blur.
-constexpr double kPayingPhotonsPerPixel = 16.0;
+constexpr double kPayingPhotonsPerPixel = 64.0;
 /// Height of the kernel over its radius, as in gathering photons: curved ground counts, other walls do not.
 constexpr float kFlatness = 0.3F;
 /// Kernels are sampled at this many points at least along their shortest radius, up to kMostSteps a pixel.
