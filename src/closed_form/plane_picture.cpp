@@ -5,6 +5,14 @@
 #include <utility>
 
 namespace nephroid::closed_form {
+namespace {
+
+/// Parts of a pixel along each side, to tell how much of it lies in which ring,
+constexpr int kMostParts = 8;
+/// if rings are at least so many pixels wide: narrower ones it would only blur.
+constexpr double kWideRing = 2.0;
+
+}  // namespace
 
 Camera PlaneView::camera() const {
   Camera camera;
@@ -57,13 +65,19 @@ double PlanePicture::meanRadius(int channel) const {
 
 std::vector<double> PlanePicture::ringMeans(double radius, std::size_t rings, int channel) const {
   std::vector<double> sums(rings, 0.0), counts(rings, 0.0);
+  const bool are_wide = radius / static_cast<double>(rings) >= kWideRing * view.pixelSize();
+  const int parts = are_wide ? kMostParts : 1;
   for (int y = 0; y < irradiance.height; ++y) {
     for (int x = 0; x < irradiance.width; ++x) {
-      const double dx = x + 0.5 - 0.5 * irradiance.width, dy = y + 0.5 - 0.5 * irradiance.height;
-      const double ring = std::hypot(dx, dy) * view.pixelSize() / radius * static_cast<double>(rings);
-      if (ring >= static_cast<double>(rings)) continue;
-      sums[static_cast<std::size_t>(ring)] += static_cast<double>(irradiance.at(x, y)[channel]);
-      counts[static_cast<std::size_t>(ring)] += 1.0;
+      // A pixel that lies across a circle counts on both sides of it, by area.
+      for (int k = 0; k < parts * parts; ++k) {
+        const double dx = x + (k % parts + 0.5) / parts - 0.5 * irradiance.width,
+                     dy = y + (k / parts + 0.5) / parts - 0.5 * irradiance.height;
+        const double ring = std::hypot(dx, dy) * view.pixelSize() / radius * static_cast<double>(rings);
+        if (ring >= static_cast<double>(rings)) continue;
+        sums[static_cast<std::size_t>(ring)] += static_cast<double>(irradiance.at(x, y)[channel]);
+        counts[static_cast<std::size_t>(ring)] += 1.0;
+      }
     }
   }
   for (std::size_t i = 0; i < rings; ++i) sums[i] /= std::max(counts[i], 1.0);

@@ -22,13 +22,13 @@ double compareProfile(const BallCase& c, const std::vector<std::string>& setting
   return error;
 }
 
-TEST(Ball, DrawsTheRadialProfileBeforeItsFocusToTwoPercent) {
+TEST(Ball, DrawsTheRadialProfileBeforeItsFocusToOnePercent) {
   // The plane cuts the caustic's cusped surface: a bright ring at the fold and a peak on the axis.
-  EXPECT_LE(compareProfile({.gap = 0.015, .view_radius = 0.03}), 0.02);
+  EXPECT_LE(compareProfile({.gap = 0.015, .view_radius = 0.03}), 0.01);
 }
 
-TEST(Ball, DrawsTheRadialProfileBehindItsFocusToTwoPercent) {
-  EXPECT_LE(compareProfile({.gap = 0.05, .view_radius = 0.1}), 0.02);
+TEST(Ball, DrawsTheRadialProfileBehindItsFocusToOnePercent) {
+  EXPECT_LE(compareProfile({.gap = 0.05, .view_radius = 0.1}), 0.01);
 }
 
 TEST(Ball, DrawsTheRadialProfileByVertexConnectionAndMergingToThreePercent) {

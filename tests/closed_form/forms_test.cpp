@@ -4,6 +4,7 @@
 
 #include <set>
 
+#include "closed_form/optics.h"
 #include "closed_form/slab.h"
 
 namespace nephroid::closed_form {
@@ -64,6 +65,19 @@ TEST(PlanePicture, TakesMeansOverRowsColumnsAndRings) {
   // Its centre is at (1.5, 0.5), √2.5 = 1.58 from the middle: in the outer of two rings, one of four pixels there.
   EXPECT_EQ(picture.ringMeans(2.0, 2), (std::vector<double>{0, 2}));
   EXPECT_NEAR(picture.meanRadius(), std::sqrt(2.5), 1e-12);
+}
+
+TEST(PlanePicture, SharesPixelsAmongWideRings) {
+  // A pixel from (7, 3) to (8, 4) about the middle, across the circle of radius 8 between two rings.
+  PlanePicture picture;
+  picture.view.columns = picture.view.rows = 32, picture.view.width = 32.0;
+  picture.irradiance = Image(32, 32, 3);
+  picture.irradiance.setRgb(16 + 7, 16 + 3, vec3(1.0F));
+  const std::vector<double> means = picture.ringMeans(16.0, 2);
+  // ∫ √(64 − y²) − 7 dy from 3 to 4.
+  const double inside = 0.1911;
+  EXPECT_NEAR(means[0] * kPiD * 64.0, inside, 0.02);
+  EXPECT_NEAR(means[1] * kPiD * 192.0, 1.0 - inside, 0.02);
 }
 
 }  // namespace
