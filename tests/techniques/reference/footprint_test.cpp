@@ -159,8 +159,8 @@ TEST_F(FootprintTest, SmallerThanAPixelCountsForThatPixelAlone) {
 TEST(FootprintScale, NarrowsSlowlyAndThenFast) {
   constexpr std::size_t kPixels = 1 << 18;
   const auto cell = [](std::uint64_t batch) { return scaleFootprints(0.1F, 1 << 18, batch, kPixels).cell; };
-  // N^(−2/3) while photons are few: eight times as many make a quarter, but for (1 + N/16)² a pixel.
-  EXPECT_NEAR(cell(7) / cell(0), 0.25 * std::pow((1 + 1.0 / 16) / (1 + 8.0 / 16), 2), 1e-4);
+  // N^(−2/3) while photons are few: eight times as many make a quarter, but for (1 + N/64)² a pixel.
+  EXPECT_NEAR(cell(7) / cell(0), 0.25 * std::pow((1 + 1.0 / 64) / (1 + 8.0 / 64), 2), 1e-4);
   // N^(−8/3) when they are many.
   EXPECT_NEAR(cell(80'000 - 1) / cell(10'000 - 1), std::pow(8.0, -8.0 / 3.0), 1e-4);
 }
