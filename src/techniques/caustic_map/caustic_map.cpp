@@ -474,8 +474,7 @@ Technique makeCausticMapTechnique() {
   technique.name = "caustic-map";
   technique.text =
       "caustics in real time, on a Vulkan device: photons from a grid over what bends light are followed through "
-      "glass, "
-      "off metal and into water, and deposited into the camera's pixels, or into a map in the light's view";
+      "glass, off metal and into water, and deposited into the camera's pixels, or into a map in the light's view";
   technique.source = "Shah, Konttinen, Pattanaik 2007";
   technique.on_vulkan = true;
   technique.params = makeCausticMapParams();

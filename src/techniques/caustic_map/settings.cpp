@@ -111,7 +111,7 @@ std::vector<ParamSpec> makeCausticMapParams() {
        0,
        1e6,
        "m",
-       "of the distance, for all but planes and march; 0: what is seen where the ray starts",
+       "of the distance, for iterate, newton and secant; 0: what is seen where the ray starts",
        {}},
       {"bands",
        number(defaults.bands),
