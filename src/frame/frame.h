@@ -32,7 +32,7 @@ struct FrameSettings {
   std::uint32_t shadow_size = 256;  ///< cells along a side of each view of a light that varies; bears on speed only
   float specular_alpha = 0.25F;     ///< microfacets finer than this are class S
   bool specular = true;             ///< makes that layer, which takes longer than all others
-  BoxTreeBuilder box_tree_builder;  ///< for `specular`, which is not made without one
+  BoxTreeBuilder box_tree_builder;  ///< for `specular`, which is not made without one, and for techniques
   std::uint32_t max_events = 12;    ///< of class S, in what is seen in mirrors and through glass
   std::uint32_t specular_spacing =
       4;  ///< pixels between those from which mirrors and glass are followed, 1 to 4; 1: all
