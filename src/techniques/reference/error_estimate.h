@@ -10,12 +10,14 @@
 #pragma once
 
 #include <cstdint>
+#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
 
 #include "core/image/image.h"
 #include "techniques/reference/film.h"
+#include "techniques/reference/picture_tiles.h"
 
 namespace nephroid {
 
@@ -61,34 +63,43 @@ class ErrorEstimate {
   ErrorEstimate(const Film& film, const std::vector<std::string>& layers);
 
   bool empty() const { return layers_.empty(); }
-  /// Passes from the eye, batches of photons: all that the film holds of either is in closed batches from here on.
-  void closeEyeBatch(std::uint64_t passes);
+  /// In every tile, what the film holds of passes from the eye is in closed batches from here on.
+  /// @param passes  that the film holds, by tile
+  void closeEyeBatches(std::span<const std::uint64_t> passes);
+  /// The same only in tiles with `shortest` new passes or more, and in proportion to all that went before: aligned
+  /// blocks of powers of two, which are what the sampler spreads well.
+  void closeFullEyeBatches(std::span<const std::uint64_t> passes, std::uint64_t shortest);
+  /// All batches of photons that the film holds are in closed batches from here on.
   void closeLightBatch(std::uint64_t passes);
-  std::uint64_t closedEyePasses() const { return eye_.passes; }
-  /// Of the direction that has fewest, among those that were closed at all.
+  /// Of the direction and tile that has fewest, among the directions that were closed at all.
   std::uint64_t batches() const;
+  /// From the eye, of the tile that has fewest.
+  std::uint64_t eyeBatches() const;
 
   /// RGB, unit of the layer; infinite where a direction has but one batch.
-  /// @param passes_from_eye, batches_from_lights  that the picture is the mean of
-  Image standardError(std::string_view layer, std::uint64_t passes_from_eye, std::uint64_t batches_from_lights) const;
+  /// @param passes_from_eye  by tile, that the picture is the mean of  @param batches_from_lights  ditto
+  Image standardError(std::string_view layer, std::span<const std::uint64_t> passes_from_eye,
+                      std::uint64_t batches_from_lights) const;
 
   /// mean(σ² / (I² + (0.01·mean I)²)) over pixels and channels: relMSE (DESIGN §6) with the picture in the place of the
   /// reference, at the last closed batches. Infinite while a direction has but one batch.
   RelativeError relMse(std::string_view layer) const;
-  /// The layer whose estimate is the largest, and that.
-  struct Worst {
+  /// A layer and its estimate.
+  struct OfLayer {
     std::string layer;
     RelativeError error;
   };
-  Worst worst() const;
+  /// Whose estimate is the largest.
+  OfLayer worst() const;
+  /// By tile: Σ σ₁²/(I² + (0.01·mean I)²) over pixels and channels, with σ₁² the variance of one pass from the eye. Two
+  /// closed batches in every tile at least.
+  std::vector<double> variancesOfPass(std::string_view layer) const;
 
   /// Visits all that a checkpoint keeps of it, with `value(number)` and `values(span)`, in a fixed order.
   template <class State>
   void visitState(State& state) {
-    for (Direction* direction : {&eye_, &lights_}) {
-      state.value(direction->batches);
-      state.value(direction->passes);
-    }
+    state.values(std::span(eye_));
+    state.value(lights_);
     for (LayerSpread& layer : layers_)
       for (BatchSpread* spread : {&layer.eye, &layer.lights}) spread->visitState(state);
   }
@@ -103,15 +114,20 @@ class ErrorEstimate {
     BatchSpread eye, lights;
   };
   const LayerSpread& find(std::string_view layer) const;
-  dvec3 meanAt(const LayerSpread& layer, std::size_t pixel) const;
+  template <class IsDue>
+  void closeEyeBatchesWhere(std::span<const std::uint64_t> passes, const IsDue& is_due);
+  dvec3 meanAt(const LayerSpread& layer, std::size_t tile, std::size_t pixel) const;
+  double floorOf(const LayerSpread& layer) const;
   static dvec3 varianceOfMean(const BatchSpread& spread, const Direction& closed, std::size_t pixel,
                               std::uint64_t passes);
+  /// Calls `visit(tile, x, y, pixel)`, in parallel for different tiles.
   template <class Visit>
-  void visitRows(const Visit& visit) const;
+  void visitPixels(const Visit& visit) const;
 
-  int width_, height_;
+  PictureTiles tiles_;
   std::vector<LayerSpread> layers_;
-  Direction eye_, lights_;
+  std::vector<Direction> eye_;  ///< by tile
+  Direction lights_;
 };
 
 }  // namespace nephroid

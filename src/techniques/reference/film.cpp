@@ -68,19 +68,22 @@ Image developLayer(const Film& film, std::string_view layer, const FilmCounts& c
   const std::vector<LayerPlanes> parts = planesOf(film, layer);
   Image image(film.width, film.height, 3);
   const double by_batches = counts.batches > 0 ? 1.0 / static_cast<double>(counts.batches) : 0.0;
-  for (std::size_t pixel = 0; pixel < image.pixels.size() / 3; ++pixel) {
-    const std::size_t row = pixel / static_cast<std::size_t>(film.width);
-    const std::uint64_t samples = counts.samples + counts.rows_ahead[row];
-    const double by_samples = samples > 0 ? 1.0 / static_cast<double>(samples) : 0.0;
-    vec3 sum(0.0F);
-    for (const LayerPlanes& part : parts) {
-      // Each layer is rounded to float before the sum, so that the files' layers add up to the files' beauty.
-      dvec3 value(0.0);
-      if (part.from_eye && part.from_eye->active()) value += part.from_eye->at(pixel) * by_samples;
-      if (part.from_lights && part.from_lights->active()) value += part.from_lights->at(pixel) * by_batches;
-      sum += vec3(value);
-    }
-    image.setRgb(static_cast<int>(pixel % static_cast<std::size_t>(film.width)), static_cast<int>(row), sum);
+  const PictureTiles& tiles = counts.passes.tiles();
+  for (std::size_t tile = 0; tile < tiles.count(); ++tile) {
+    const std::uint64_t passes = counts.passes.done()[tile];
+    const double by_passes = passes > 0 ? 1.0 / static_cast<double>(passes) : 0.0;
+    tiles.visitPixels(tile, [&](int x, int y) {
+      const std::size_t pixel = tiles.pixelOf(x, y);
+      vec3 sum(0.0F);
+      for (const LayerPlanes& part : parts) {
+        // Each layer is rounded to float before the sum, so that the files' layers add up to the files' beauty.
+        dvec3 value(0.0);
+        if (part.from_eye && part.from_eye->active()) value += part.from_eye->at(pixel) * by_passes;
+        if (part.from_lights && part.from_lights->active()) value += part.from_lights->at(pixel) * by_batches;
+        sum += vec3(value);
+      }
+      image.setRgb(x, y, sum);
+    });
   }
   return image;
 }

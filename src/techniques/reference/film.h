@@ -9,6 +9,7 @@
 
 #include "core/image/image.h"
 #include "core/math.h"
+#include "techniques/reference/eye_passes.h"
 #include "techniques/technique.h"
 
 namespace nephroid {
@@ -88,9 +89,8 @@ struct LayerPlanes {
 };
 /// What sums of a film are divided by.
 struct FilmCounts {
-  std::uint64_t samples = 0;                    ///< passes from the eye over the whole picture
-  const std::vector<std::uint8_t>& rows_ahead;  ///< by row: 1 where it holds one more
-  std::uint64_t batches = 0;                    ///< of photons
+  const EyePasses& passes;
+  std::uint64_t batches = 0;  ///< of photons
 };
 /// From sums to the picture of one layer that is sampled.
 Image developLayer(const Film& film, std::string_view layer, const FilmCounts& counts);

@@ -43,8 +43,6 @@ constexpr std::uint64_t kErrorBatches = 16;
 /// Passes from the eye in the first batches of an estimate, at most. Points of the sampler are well spread together, so
 /// that a mean over them errs less than the spread of single ones says: batches of four know of that.
 constexpr std::uint64_t kErrorBatchPasses = 4;
-/// Later batches are as long as this share of all passes, for the same reason (see nextErrorBatch).
-constexpr std::uint64_t kErrorBatchShare = 4;
 /// Batches of each direction before an estimate may end a render: of fewer, even the mean over a picture is unsure.
 constexpr std::uint64_t kFirstErrorBatches = 8;
 
@@ -70,10 +68,12 @@ class ReferenceRender {
         needs_(settings.layers),
         world_(scene, camera, settings.width, settings.height, makeOptions(settings)),
         film_(settings.width, settings.height, needs_),
-        errors_(film_, layersWithError(settings.layers, settings.target_error)),
+        adaptive_(settings.params.getBool("adaptive") && estimator_ != Estimator::kVcm),
+        steered_(settings.target_error > 0.0 || (isTimedOnly() && adaptive_)),
+        errors_(film_, layersToEstimate()),
         path_needs_(estimator_ == Estimator::kVcm ? needs_.withoutCaustics() : needs_),
         path_tracer_(world_, path_needs_),
-        row_done_(static_cast<std::size_t>(settings.height), 0) {
+        passes_(settings.width, settings.height) {
     const bool from_lights = world_.options.light_tracing, connects_and_merges = estimator_ == Estimator::kVcm;
     if (connects_and_merges) checkVcm(scene, !errors_.empty());
     const bool gather_direct = estimator_ == Estimator::kPhotonMap && (needs_.caustic || needs_.irradiance_caustic);
@@ -130,9 +130,20 @@ class ReferenceRender {
     return options;
   }
 
+  /// Those whose errors were asked for, and without a target those that steer: `beauty`, or else all.
+  std::vector<std::string> layersToEstimate() const {
+    std::vector<std::string> layers = layersWithError(settings_.layers, settings_.target_error);
+    if (settings_.target_error > 0.0 || !steered_) return layers;
+    for (const std::string& layer : settings_.layers) {
+      const bool steers = needs_.beauty ? layer == "beauty" : !planesOf(film_, layer).empty();
+      if (steers && std::find(layers.begin(), layers.end(), layer) == layers.end()) layers.push_back(layer);
+    }
+    return layers;
+  }
+  bool isTimedOnly() const { return settings_.seconds > 0 && settings_.samples == 0 && settings_.photons == 0; }
+
   void chooseBudgets() {
-    const bool timed_only = settings_.seconds > 0 && settings_.samples == 0 && settings_.photons == 0;
-    const bool open_ended = timed_only || settings_.target_error > 0.0;
+    const bool open_ended = isTimedOnly() || settings_.target_error > 0.0;
     constexpr std::uint64_t kUnlimited = std::uint64_t{1} << 62;
     samples_budget_ = settings_.samples ? settings_.samples : open_ended ? kUnlimited : kDefaultSamples;
     photons_budget_ = settings_.photons ? settings_.photons : open_ended ? kUnlimited : kDefaultPhotons;
@@ -203,7 +214,7 @@ class ReferenceRender {
     // What is gathered must have been emitted; otherwise the picture comes first.
     if (samples_done_ == 0) return gather_ && photons_done_ == 0;
     if (photons_done_ == 0) return true;
-    if (settings_.target_error > 0.0) return photonsLessenError();
+    if (steered_ && (settings_.target_error > 0.0 || errorIsKnown())) return photonsLessenError();
     if (settings_.seconds > 0) return light_seconds_ <= path_seconds_;
     return share(photons_done_, photons_budget_) <= share(samples_done_, samples_budget_);
   }
@@ -223,37 +234,44 @@ class ReferenceRender {
     return static_cast<double>(done) / static_cast<double>(budget);
   }
 
-  /// One sample per pixel. Pixels are independent, so the order of tiles does not matter. If it is stopped, the rows
-  /// that are done are remembered, and the next call does the others.
+  /// A round of paths. If it is stopped, the tiles that are done are remembered, and the next call does the others.
   void tracePaths() {
-    const auto sample = static_cast<std::uint32_t>(samples_done_);
-    std::vector<PathCounters> rows(row_done_.size());
-    parallelFor(row_done_.size(), [&](std::size_t row) {
-      if (row_done_[row] || (stopped() && samples_done_ > 0)) return;
-      const int y = static_cast<int>(row);
-      for (int x = 0; x < settings_.width; ++x) {
-        if (path_needs_.eyeTraced(!vcm_)) path_tracer_.tracePath(x, y, sample, film_, rows[row]);
-        if (vcm_) vcm_->tracePath(x, y, sample, film_, rows[row]);
-      }
-      row_done_[row] = 1;
-    });
-    for (const PathCounters& row : rows) path_rays_ += row.rays, not_finite_ += row.not_finite;
-    if (std::find(row_done_.begin(), row_done_.end(), 0) != row_done_.end()) return;
-    std::fill(row_done_.begin(), row_done_.end(), std::uint8_t{0});
+    if (!passes_.planned()) planRound();
+    const bool something = samples_done_ > 0;
+    std::atomic<std::uint64_t> rays{0}, not_finite{0};
+    passes_.run(
+        [&](int x, int y, std::uint32_t sample) {
+          PathCounters counters;
+          if (path_needs_.eyeTraced(!vcm_)) path_tracer_.tracePath(x, y, sample, film_, counters);
+          if (vcm_) vcm_->tracePath(x, y, sample, film_, counters);
+          rays.fetch_add(counters.rays, std::memory_order_relaxed);
+          if (counters.not_finite > 0) not_finite.fetch_add(counters.not_finite, std::memory_order_relaxed);
+          return counters.rays;
+        },
+        [&] { return stopped() && something; });
+    path_rays_ += rays, not_finite_ += not_finite;
+    if (passes_.planned()) return;
     ++samples_done_;
-    if (!gather_ || !photonsLeft()) closeEyeBatch();
+    if (!gather_ || !photonsLeft()) closeEyeBatches();
   }
-  bool isBetweenPasses() const { return std::find(row_done_.begin(), row_done_.end(), 1) == row_done_.end(); }
-
-  /// Passes of the next batch: aligned blocks of powers of two, which are what the sampler spreads well.
-  std::uint64_t nextErrorBatch() const {
-    return std::max(error_batch_passes_, std::bit_floor(errors_.closedEyePasses()) / kErrorBatchShare);
+  void planRound() {
+    if (!pass_variances_.empty())
+      passes_.planWhereItPays(pass_variances_, static_cast<std::uint32_t>(kErrorBatchPasses));
+    else
+      passes_.planAll();
   }
 
-  void closeEyeBatch() {
-    if (errors_.empty() || samples_done_ - errors_.closedEyePasses() < nextErrorBatch()) return;
-    errors_.closeEyeBatch(samples_done_);
-    if (settings_.target_error > 0.0) error_ = errors_.worst();
+  void closeEyeBatches() {
+    if (errors_.empty()) return;
+    errors_.closeFullEyeBatches(passes_.done(), error_batch_passes_);
+    estimateErrors();
+  }
+  void estimateErrors() {
+    if (!steered_) return;
+    const bool by_picture = settings_.target_error <= 0.0 && needs_.beauty;
+    error_ = by_picture ? ErrorEstimate::OfLayer{"beauty", errors_.relMse("beauty")} : errors_.worst();
+    if (adaptive_ && errors_.eyeBatches() >= kFirstErrorBatches)
+      pass_variances_ = errors_.variancesOfPass(error_.layer);
   }
 
   void tracePhotons() {
@@ -272,8 +290,8 @@ class ReferenceRender {
     ++batches_done_;
     if (!errors_.empty()) errors_.closeLightBatch(batches_done_);
     // Paths that gather the same photons belong to the same batch.
-    if (gather_) closeEyeBatch();
-    if (settings_.target_error > 0.0) error_ = errors_.worst();
+    if (gather_ && !errors_.empty()) errors_.closeEyeBatches(passes_.done());
+    estimateErrors();
     samples_at_photons_ = samples_done_;
     if (!gather_) return;
     const std::vector<GridPhoton> deposits = collectDeposits();
@@ -343,7 +361,7 @@ class ReferenceRender {
     if (vcm_) vcm_->visitState(state);
     film_.visitPlanes([&](FilmPlane& plane) { state.values(plane.values()); });
     errors_.visitState(state);
-    state.values(std::span(row_done_));
+    passes_.visitState(state);
     for (Ledger& ledger : ledgers_) ledger.visitState(state);
     for (std::uint64_t* count : {&samples_done_, &photons_done_, &batches_done_, &samples_at_photons_, &path_rays_,
                                  &light_rays_, &not_finite_})
@@ -373,7 +391,7 @@ class ReferenceRender {
           fmt::format("{}: holds other sums than this render has; delete it to begin anew", settings_.checkpoint.path));
     if (light_tracer_) makePhotonBatch(batch_photons_);
     if ((gather_ || vcm_) && batches_done_ > 0) retraceLastBatch();
-    if (settings_.target_error > 0.0) error_ = errors_.worst();
+    estimateErrors();
     result.notes.push_back(fmt::format("went on from {} with {} samples, {:.1f} M photons", settings_.checkpoint.path,
                                        samples_done_, static_cast<double>(photons_done_) * 1e-6));
   }
@@ -413,17 +431,16 @@ class ReferenceRender {
 
   /// From sums to pictures.
   void develop(RenderResult& result) {
-    // Of a pass that was cut short some rows hold more than others: no batch.
-    if (!errors_.empty() && isBetweenPasses()) errors_.closeEyeBatch(samples_done_);
+    if (!errors_.empty()) errors_.closeEyeBatches(passes_.done());
     for (const std::string& name : settings_.layers) {
       const auto geometry =
           std::find_if(geometry_.begin(), geometry_.end(), [&](const Layer& l) { return l.name == name; });
       if (geometry != geometry_.end())
         result.image.layers.push_back(std::move(*geometry));
       else if (const std::string_view erring = erringLayer(name); !erring.empty())
-        result.image.layers.push_back({name, errors_.standardError(erring, samples_done_, batches_done_)});
+        result.image.layers.push_back({name, errors_.standardError(erring, passes_.done(), batches_done_)});
       else
-        result.image.layers.push_back({name, developLayer(film_, name, {samples_done_, row_done_, batches_done_})});
+        result.image.layers.push_back({name, developLayer(film_, name, {passes_, batches_done_})});
     }
   }
 
@@ -437,13 +454,13 @@ class ReferenceRender {
     result.stats.stages = stages_;
     result.stats.rays = path_rays_ + light_rays_;
     result.stats.photons = photons_done_;
-    result.stats.samples = samples_done_;
+    result.stats.samples = passes_.meanPasses();
     result.stats.not_finite = not_finite_;
     auto& metadata = result.image.metadata;
     metadata["technique"] = "reference";
     metadata["device"] = "cpu";
     metadata["seed"] = std::to_string(settings_.seed);
-    metadata["samples"] = std::to_string(samples_done_);
+    metadata["samples"] = std::to_string(passes_.meanPasses());
     metadata["photons"] = std::to_string(photons_done_);
     for (const std::string& layer : layersWithError(settings_.layers, settings_.target_error))
       metadata["estimated_relmse." + layer] = fmt::format("{:.4g}", errors_.relMse(layer).total());
@@ -469,7 +486,7 @@ class ReferenceRender {
                                       "give them extras.radius or extras.angle");
     if (any_delta && !world_.options.light_tracing && needs_.caustic)
       result.notes.emplace_back("estimator=path finds no caustic of lights without a size");
-    if (!errors_.empty() && errors_.batches() < 2)
+    if (!layersWithError(settings_.layers, settings_.target_error).empty() && errors_.batches() < 2)
       result.notes.emplace_back("standard errors are infinite: they take two batches at least; raise the budget");
     if (needs_.specular_caustic_bias && !gather_ && !vcm_)
       result.notes.emplace_back("specular_caustic_bias is black: nothing is gathered under a kernel");
@@ -494,6 +511,8 @@ class ReferenceRender {
   LayerNeeds needs_;
   ReferenceWorld world_;
   Film film_;
+  bool adaptive_;  ///< passes from the eye may go where errors are large
+  bool steered_;   ///< errors decide what is next
   ErrorEstimate errors_;
   LayerNeeds path_needs_;  ///< of `path_tracer_`
   PathTracer path_tracer_;
@@ -504,13 +523,14 @@ class ReferenceRender {
   std::vector<Ledger> ledgers_;
   std::vector<Layer> geometry_;
   std::vector<StageTime> stages_;
-  std::vector<std::uint8_t> row_done_;  ///< 1: holds the sample that is being taken already
+  EyePasses passes_;
   bool gather_ = false;
   PhotonGrid caustics_;
   double radius_squared_ = 0.0;
   std::uint64_t samples_budget_ = 0, photons_budget_ = 0, samples_done_ = 0, photons_done_ = 0, batches_done_ = 0;
   std::uint64_t path_rays_ = 0, light_rays_ = 0, not_finite_ = 0;
-  ErrorEstimate::Worst error_;  ///< at the last closed batches; only with a target
+  ErrorEstimate::OfLayer error_;        ///< at the last closed batches; only where errors steer
+  std::vector<double> pass_variances_;  ///< of that layer, by tile
   std::uint64_t error_batch_passes_ = 1, samples_at_photons_ = 0;
   std::uint32_t batch_photons_ = 0;  ///< asked of a batch
   double path_seconds_ = 0, light_seconds_ = 0;
@@ -540,6 +560,14 @@ Technique makeReferenceTechnique() {
       makeSpecularAlphaParam(),
       {"max-bounces", 64, 1, 1024, "", "scattering events on a path before it is given up", {}},
       makeEstimatorParam(),
+      {"adaptive",
+       true,
+       0,
+       0,
+       "",
+       "where --target-error or --seconds alone end the render: more paths where the picture is noisiest, after some "
+       "everywhere; false: as many everywhere",
+       {}},
       {"bands", 0, 0, 64, "", "wavelength bands of dispersive light; 0: continuous", {}},
   };
   technique.render = renderReference;

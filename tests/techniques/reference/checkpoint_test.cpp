@@ -87,13 +87,14 @@ TEST_P(Resumed, GivesThePixelsOfAnUninterruptedRender) {
   expectSame(renderInPieces(scene, settings, (folder / "seldom").string(), 5), whole);
 }
 
-INSTANTIATE_TEST_SUITE_P(
-    Layers, Resumed,
-    ::testing::Values(Case{"all", {"beauty", "specular_caustic", "irradiance", "albedo"}}, Case{"eye", {"direct"}},
-                      Case{"lights", {"caustic"}},
-                      Case{"errors", {"beauty_error", "specular_caustic_error", "specular_caustic_bias"}},
-                      Case{"target", {"beauty"}, 0.3}, Case{"vcm", {"beauty", "specular_caustic"}, 0, "vcm"}),
-    [](const auto& tested) { return tested.param.name; });
+INSTANTIATE_TEST_SUITE_P(Layers, Resumed,
+                         ::testing::Values(Case{"all", {"beauty", "specular_caustic", "irradiance", "albedo"}},
+                                           Case{"eye", {"direct"}}, Case{"lights", {"caustic"}},
+                                           Case{"errors",
+                                                {"beauty_error", "specular_caustic_error", "specular_caustic_bias"}},
+                                           Case{"target", {"beauty"}, 0.3}, Case{"adaptive", {"beauty"}, 0.03},
+                                           Case{"vcm", {"beauty", "specular_caustic"}, 0, "vcm"}),
+                         [](const auto& tested) { return tested.param.name; });
 
 TEST(Checkpoint, OfAPassThatWasCutShortKeepsItsRows) {
   const testing::ScratchFolder folder;
