@@ -120,12 +120,11 @@ TEST(AdaptivePasses, LeaveTheMeanAsItIs) {
   const SceneData scene = makeCorner();
   const Camera camera = makeCamera("corner", vec3(3.5F, 3.0F, 3.0F), vec3(0, 0.6F, 0), radians(55));
   // Where a tile's own noise decides how often it is seen, its mean could suffer: dark tiles would stay dark.
-  constexpr int kRenders = 144;
+  constexpr int kRenders = 24;
   double mean[2] = {}, squares[2] = {};
   for (int seed = 0; seed < kRenders; ++seed) {
     for (const bool adaptive : {false, true}) {
       RenderSettings settings = settingsFor(adaptive);
-      settings.target_error = 0.05;
       settings.seed = static_cast<std::uint64_t>(seed);
       const dvec3 value = test::meanOf(test::renderReference(scene, camera, settings).image.layers[1].image);
       mean[adaptive] += value.y / kRenders, squares[adaptive] += value.y * value.y / kRenders;
@@ -134,7 +133,7 @@ TEST(AdaptivePasses, LeaveTheMeanAsItIs) {
   double variance = 0.0;
   for (int i = 0; i < 2; ++i) variance += (squares[i] - mean[i] * mean[i]) / (kRenders - 1);
   EXPECT_NEAR(mean[1], mean[0], 3.0 * std::sqrt(variance));
-  EXPECT_LT(std::sqrt(variance), 6e-3 * mean[0]);
+  EXPECT_LT(std::sqrt(variance), 0.015 * mean[0]);
 }
 
 }  // namespace
