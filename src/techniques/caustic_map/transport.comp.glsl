@@ -74,6 +74,7 @@ struct Flight {
   bool decided;         // the branch has nothing more to say
   bool forks;           // the next branch goes another way than this one
   bool varies;          // by textures, from place to place of what it met
+  bool passed;          // a pane that mirrors too, before any event
   bool left_weaker;     // went past, or along, the first weaker way that no branch takes
   int closed;           // closed solids that it is inside of
   uint landings;        // photons that were left on the way
@@ -102,16 +103,22 @@ bool isOwn(Flight flight) {
   return followsWeaker() ? flight.left_weaker : flight.decided || push.branch == flight.chances + 1u;
 }
 
+/// Whether what is to be said before the first event is this pass's. What goes through a pane goes the way of those
+/// that are let in, and the first of them speaks for it.
+bool ownsStart(Flight flight) { return push.branch == (flight.passed ? 1u : 0u); }
+
 /// Goes on along the branch, so that no two branches take the same path: at the first event one is reflected and the
 /// others are let in; of those, branch b leaves at its b-th chance, that is where something is let through from the
 /// inside, and is reflected at those before. Total reflection is no chance and is followed by all. Elsewhere (at what is
 /// met after leaving, or inside) the way that carries more is followed. The other is lost, but for the first one of
-/// branch 1, which a pass of its own may follow (TransportSettings::follows_weaker).
+/// branch 1, which a pass of its own may follow (TransportSettings::follows_weaker). Straight through a pane is no event:
+/// behind it branches b >= 1 are let in as well, and what is reflected there is lost.
 Choice chooseWay(Way reflected, Way transmitted, uint events, bool is_inside, inout Flight flight) {
   if (events == 0u) {
     flight.decided = push.branch == 0u;
     flight.forks = flight.decided && largest(transmitted.weight) > 0.0;
     vec3 rest = flight.decided && isLast() ? transmitted.weight : vec3(0.0);
+    if (flight.passed) rest = reflected.weight;
     return Choice(flight.decided ? reflected : transmitted, rest, false, false);
   }
   bool can_leave = largest(transmitted.weight) > 0.0;
@@ -157,7 +164,7 @@ Encounter arrive(inout Flight flight, Met met) {
   bool emission_seen;
   vec3 before = flight.path.throughput;
   Encounter e = encounter(flight.path, met, emission_seen);
-  bool own = flight.path.events == 0u ? push.branch == 0u : isOwn(flight);
+  bool own = flight.path.events == 0u ? ownsStart(flight) : isOwn(flight);
   if (kAccounts && own) flight.account.absorbed += before - flight.path.throughput;
   return e;
 }
@@ -165,7 +172,7 @@ Encounter arrive(inout Flight flight, Met met) {
 /// Is what a surface takes and sends nowhere this branch's?
 bool ownsRest(Flight flight, Choice choice) {
   if (followsWeaker()) return flight.left_weaker && !choice.is_weaker;
-  if (flight.path.events == 0u) return push.branch == 0u;
+  if (flight.path.events == 0u) return ownsStart(flight);
   return choice.is_chance ? flight.decided : isOwn(flight);
 }
 
@@ -276,7 +283,7 @@ void bend(inout Flight flight, Met met) {
     if (flight.path.ended) flight.outcome = kOutcomeInterior;
     return;
   }
-  if (kFluxEq6 && events == 0u) takeFluxEq6(flight, abs(dot(flight.path.ray.dir, e.surface.shading)));
+  if (kFluxEq6 && events == 0u && !flight.passed) takeFluxEq6(flight, abs(dot(flight.path.ray.dir, e.surface.shading)));
   Medium from = fetchMedium(e.boundary.from), to = fetchMedium(e.boundary.to);
   optics.ior_from = iorOf(from, flight.path.wavelength_nm);
   if (e.crossing.is_solid) optics.ior_to = iorOf(to, flight.path.wavelength_nm);
@@ -299,7 +306,9 @@ void bend(inout Flight flight, Met met) {
   bool is_fork = choice.is_chance && flight.forks;
   if (kListed && push.branch > 0u && !isLast() && is_fork) keepFork(flight, e, reflected);
   flight.chain = hashChain(flight.chain, 2u * met.instance + (choice.way.through ? 1u : 0u));
-  take(flight.path, choice.way, e.surface, e.crossing, false);
+  bool is_smooth_pane = optics.is_pane != 0u && optics.alpha == 0.0;
+  take(flight.path, choice.way, e.surface, e.crossing, is_smooth_pane);
+  flight.passed = flight.passed || (events == 0u && is_smooth_pane && choice.way.through);
   if (largest(abs(flight.path.throughput)) <= 0.0) flight.outcome = events == 0u ? kOutcomeNoWay : kOutcomeAbsorbed;
   else if (flight.path.ended) flight.outcome = flight.path.events >= max_events ? kOutcomeBounceLimit : kOutcomeInterior;
 }
@@ -346,7 +355,7 @@ void meetReceiver(inout Flight flight, Met met) {
     return;
   }
   vec3 rest = flight.path.throughput * (1.0 - pass);
-  bool own = is_first ? push.branch == 0u : isOwn(flight);
+  bool own = is_first ? ownsStart(flight) : isOwn(flight);
   if (kAccounts && own && is_first) flight.account.blocked += rest;
   if (kAccounts && own && !is_first) flight.account.other_way += rest;
   flight.path.throughput *= pass;
@@ -441,7 +450,7 @@ Met meetNext(inout Flight flight, Pictures generators, Pictures receivers) {
 /// Ends that another branch has to say: before the first event the first branch, else see isOwn.
 void leaveToOthers(inout Flight flight) {
   bool met_generator = flight.path.events > 0u;
-  if (met_generator ? !isOwn(flight) : push.branch > 0u) {
+  if (met_generator ? !isOwn(flight) : !ownsStart(flight)) {
     flight.path.throughput = vec3(0.0);
     if (met_generator) flight.outcome = kOutcomeNoWay;
   }
@@ -477,8 +486,8 @@ void main() {
   PhotonAccount account =
       PhotonAccount(push.branch == 0u ? flux : none, none, none, none, none, none, none, none, none);
   Flight flight =
-      Flight(path, index, 0u, 0u, kOutcomeDeposited, 0u, false, false, false, false, 0, 0u, 0.0, ray.origin, none, none,
-             none, account);
+      Flight(path, index, 0u, 0u, kOutcomeDeposited, 0u, false, false, false, false, false, 0, 0u, 0.0, ray.origin,
+             none, none, none, account);
 
   Pictures generators = Pictures(0u, kGeneratorViews, kGeneratorLayers, push.generator_size);
   Pictures receivers = Pictures(kGeneratorViews, kReceiverViews, kReceiverLayers, push.receiver_size);

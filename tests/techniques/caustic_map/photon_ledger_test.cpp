@@ -284,6 +284,34 @@ TEST_F(PhotonLedgerTest, LightPassesPanesAsShadowsDo) {
   }
 }
 
+TEST_F(PhotonLedgerTest, PanesThatMirrorLetTheRestPassAsShadowsDo) {
+  // Of so high an index a pane casts a caustic: what it reflects. What goes through is no event, and on a receiver
+  // direct light.
+  Material pane = test::makeGlass(2.2F);
+  pane.thickness = 0.0F;
+  SceneData wall;
+  test::addObject(wall, test::makeFloor(20.0), test::makeDiffuse(vec3(0.6F)));
+  test::addObject(wall, makeRectangle("pane", dvec3(0, 1.1, 0), dvec3(0, 1, 0), dvec3(0, 0, 1)), pane);
+  wall.lights.push_back(test::makeSun(vec3(-1, -0.7F, 0.2F), vec3(3)));
+  LightRig rig(device(), wall, 128);
+  const Ledger mirrored = rig.ledger(2), reference = referenceLedger(wall);
+  expectCloses(mirrored);
+  EXPECT_NEAR(mirrored.deposited.y / reference.deposited.y, 1.0, 0.01);
+  EXPECT_NEAR(mirrored.blocked.y / mirrored.emitted.y, 1.0 - mirrored.deposited.y / mirrored.emitted.y, 0.01);
+
+  // Before a ball, the ball's caustic is tinted. What the ball itself reflects is lost, 7 % with what the pane sends
+  // back of it, and is in the account.
+  SceneData roof = test::makeBallScene(test::makeGlass(1.5F), 128);
+  test::addObject(roof, makeRectangle("pane", dvec3(0, 2.6, 0), dvec3(0, 0, 1.2), dvec3(1.2, 0, 0)), pane);
+  roof.lights.push_back(test::makeSun(vec3(-0.2F, -1, -0.1F), vec3(3)));
+  LightRig above(device(), roof, 192);
+  const Ledger tinted = above.ledger(4, {.max_events = 12});
+  expectCloses(tinted);
+  const double expected = referenceLedger(roof).deposited.y;
+  EXPECT_NEAR(tinted.deposited.y / expected, 0.93, 0.02);
+  EXPECT_GT(tinted.lost[static_cast<std::size_t>(LossReason::kOtherWay)].y, 0.07 * expected);
+}
+
 TEST_F(PhotonLedgerTest, AgreesWithTheReferenceForAPrism) {
   // Total reflection decides who gets what.
   const SceneData scene = loadScene("builtin:prism");
