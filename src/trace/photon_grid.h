@@ -1,7 +1,8 @@
 // Photons where they ended, found again by place: a hash grid over one batch (Jensen 2001; cells as in Teschner 2003).
 //
-// Cells are as wide as the diameter of a search, so a search looks at eight. Built in the order of the photons, so that
-// sums over a search do not depend on threads.
+// Cells are as wide as the diameter of a search, so a search looks at eight, less those that it does not reach. Blocks
+// of 4 × 4 × 4 cells are hashed, not single ones: what is near in space is near in memory, and searches side by side
+// find it in the cache. Built in the order of the photons, so that sums over a search do not depend on threads.
 #pragma once
 
 #include <bit>
@@ -52,13 +53,27 @@ class BasicPhotonGrid {
   /// Calls `visit(photon)` for every photon within the radius of `position`.
   template <class Visit>
   void visitNear(vec3 position, Visit&& visit) const {
+    visitDisc(position, vec3(0.0F), 1.0F, visit);
+  }
+  /// The same, only of those near a plane through it: off it by at most `flatness` times the radius.
+  /// @param normal  of the plane, unit
+  template <class Visit>
+  void visitDisc(vec3 position, vec3 normal, float flatness, Visit&& visit) const {
     if (empty()) return;
-    const vec3 low = (position - radius_) * inverse_cell_;
-    const int x0 = cellOf(low.x), y0 = cellOf(low.y), z0 = cellOf(low.z);
+    const vec3 place = position * inverse_cell_, first = glm::floor(place - 0.5F);
+    const int x0 = static_cast<int>(first.x), y0 = static_cast<int>(first.y), z0 = static_cast<int>(first.z);
+    const float squared_radius = radius_ * radius_, thickness = flatness * radius_;
+    // How far the disc is from a cell's middle, along the normal, where both only just touch; in cells.
+    const float touch = 0.5F * (std::abs(normal.x) + std::abs(normal.y) + std::abs(normal.z) + flatness);
     std::uint32_t seen[8];
     int count = 0;
     for (int k = 0; k < 8; ++k) {
-      const std::uint32_t bucket = hashCell(x0 + (k & 1), y0 + ((k >> 1) & 1), z0 + (k >> 2));
+      const int dx = k & 1, dy = (k >> 1) & 1, dz = k >> 2;
+      const vec3 to_middle = first + vec3(dx, dy, dz) + 0.5F - place;
+      const vec3 outside = glm::max(glm::abs(to_middle) - 0.5F, vec3(0.0F));
+      // A little more than the radius and the touch, for rounding: photons are asked one by one.
+      if (dot(outside, outside) > 0.2501F || std::abs(dot(normal, to_middle)) > 1.0001F * touch) continue;
+      const std::uint32_t bucket = hashCell(x0 + dx, y0 + dy, z0 + dz);
       // Two cells may share a bucket; its photons count once.
       bool repeated = false;
       for (int i = 0; i < count; ++i) repeated = repeated || seen[i] == bucket;
@@ -66,7 +81,7 @@ class BasicPhotonGrid {
       seen[count++] = bucket;
       for (std::uint32_t i = begin_[bucket]; i < begin_[bucket + 1]; ++i) {
         const vec3 offset = photons_[i].position - position;
-        if (dot(offset, offset) <= radius_ * radius_) visit(photons_[i]);
+        if (dot(offset, offset) <= squared_radius && std::abs(dot(offset, normal)) <= thickness) visit(photons_[i]);
       }
     }
   }
@@ -74,9 +89,11 @@ class BasicPhotonGrid {
  private:
   static int cellOf(float x) { return static_cast<int>(std::floor(x)); }
   std::uint32_t hashCell(int x, int y, int z) const {
-    const std::uint32_t h = static_cast<std::uint32_t>(x) * 73856093U ^ static_cast<std::uint32_t>(y) * 19349663U ^
-                            static_cast<std::uint32_t>(z) * 83492791U;
-    return h & mask_;
+    const std::uint32_t block = static_cast<std::uint32_t>(x >> 2) * 73856093U ^
+                                static_cast<std::uint32_t>(y >> 2) * 19349663U ^
+                                static_cast<std::uint32_t>(z >> 2) * 83492791U;
+    const auto within = static_cast<std::uint32_t>((x & 3) | (y & 3) << 2 | (z & 3) << 4);
+    return (block << 6 | within) & mask_;
   }
 
   std::vector<Photon> photons_;       ///< bucket by bucket

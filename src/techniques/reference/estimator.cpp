@@ -38,6 +38,12 @@ std::string_view nameOf(Estimator estimator) { return kNames[static_cast<std::si
 
 std::vector<std::string> estimatorNames() { return {kNames.begin(), kNames.end()}; }
 
+PhotonPaths photonPathsOf(Estimator estimator) {
+  if (estimator == Estimator::kPath) return {};
+  const bool gathers = estimator != Estimator::kVcm;
+  return {.caustic = true, .indirect = true, .specular_caustic = true, .specular_indirect = gathers};
+}
+
 void FootprintSpread::apply(const ReferenceWorld& world, LightTracer& tracer, PhotonBatch& batch) {
   view = std::make_unique<ReceiverView>(world);
   tracer.spreadOver(view.get());

@@ -35,6 +35,9 @@ std::string_view nameOf(Estimator estimator);
 /// Every value of the parameter but `auto`.
 std::vector<std::string> estimatorNames();
 
+/// The paths that are left to photons, not to chance.
+PhotonPaths photonPathsOf(Estimator estimator);
+
 /// What spreads photons over footprints: the view that they are spread over, and how far for each light.
 struct FootprintSpread {
   std::unique_ptr<ReceiverView> view;

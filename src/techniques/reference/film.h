@@ -48,6 +48,7 @@ struct LayerNeeds {
     rest.caustic = rest.irradiance_caustic = rest.specular_caustic = rest.specular_caustic_bias = false;
     return rest;
   }
+  bool anyIrradiance() const { return irradiance || irradiance_caustic; }
   /// Must paths from the eye go on after a first diffuse event?
   bool beyondDiffuse() const { return indirect || irradiance; }
   /// Must paths from the eye follow a first specular event?

@@ -9,6 +9,11 @@ namespace {
 /// Events before Russian roulette may end a photon: it only ends what absorption has made weak.
 constexpr int kRouletteStart = 8;
 
+/// Share of the photons that leave deposits after their first, each for all the others. What a caustic lights in turn
+/// is spread evenly and far dimmer: an eighth of the photons shows it with less noise than the caustic has, and their
+/// rays cost a few per cent.
+constexpr float kIndirectShare = 1.0F / 8.0F;
+
 }  // namespace
 
 void CameraConnections::flush() {
@@ -129,26 +134,36 @@ bool LightPath::scatter() {
   } else if (stage_ == Stage::kEmitted) {
     ledger_->blocked += dvec3(rest);
   } else {
-    if (stage_ == Stage::kSpecularChain) {
+    const bool first = stage_ == Stage::kSpecularChain;
+    if (first) {
       ledger_->deposited += dvec3(rest);
       deposit(weighted, wo);
+    } else if (deposits_again_) {
+      depositAgain(weighted);
     }
-    if (context_->connect_caustics || stage_ != Stage::kSpecularChain) connectToCamera(bsdf, wo);
+    if (first ? context_->connect_caustics : context_->connect_indirect) connectToCamera(bsdf, wo);
   }
   return continueWith(bsdf, specular_share, wo);
 }
 
 void LightPath::deposit(vec3 weighted, vec3 wo) {
   PhotonTally& tally = context_->tally;
-  if (context_->keep_deposits) tally.deposits.push_back({encounter_.point.position, state_.ray.dir, weighted});
+  if (context_->keep_caustic_deposits)
+    tally.caustic_deposits.push_back({encounter_.point.position, state_.ray.dir, weighted});
   if (!trail_.carried()) return;
   tally.vcm_photons.push_back(trail_.photonAt(encounter_.point, wo, weighted));
   if (trail_.connects()) tally.vcm_ends.push_back(trail_.vertexAt(surface(), wo, weighted, EventClass::kDiffuse));
 }
 
+void LightPath::depositAgain(vec3 weighted) {
+  context_->tally.indirect_deposits.push_back(
+      {encounter_.point.position, state_.ray.dir, weighted * (1.0F / kIndirectShare)});
+}
+
 bool LightPath::continueWith(const Bsdf& bsdf, vec3 specular_share, vec3 wo) {
   const float p_specular = bsdf.specularProbability();
-  const bool diffuse_allowed = context_->continue_after_diffuse && stage_ != Stage::kEmitted && bsdf.hasDiffuse();
+  const bool beyond_diffuse = context_->connect_indirect || context_->keep_indirect_deposits;
+  const bool diffuse_allowed = beyond_diffuse && stage_ != Stage::kEmitted && bsdf.hasDiffuse();
   const vec3 specular_flux = flux() * specular_share;
   const bool must_choose = bsdf.hasDiffuse();
   const bool specular = p_specular > 0.0F && (!must_choose || sampler_.next1D() < p_specular);
@@ -207,20 +222,33 @@ void LightPath::bendFootprint(const BsdfSample& s, float p_class) {
 }
 
 bool LightPath::scatterDiffuse(const Bsdf& bsdf, float p_class, vec3 wo) {
+  if (stage_ == Stage::kSpecularChain && context_->keep_indirect_deposits)
+    deposits_again_ = sampler_.next1D() < kIndirectShare;
+  stage_ = Stage::kAfterDiffuse;
+  if (!deposits_again_ && !context_->connect_indirect) return false;
   const vec2 u = sampler_.next2D();
   const auto s = bsdf.sample(EventClass::kDiffuse, u, sampler_.next1D(), Transport::kFlux);
-  stage_ = Stage::kAfterDiffuse;
   footprint_.lose();
   if (!s) return false;
   // Flux arrives on the true surface and leaves from it; the BSDF counts both cosines on the shaded one.
   const float leaving = bsdf.shadingCosineRatio(s->dir);
   if (leaving <= 0.0F) return false;
-  flux_ *= s->weight * (bsdf.shadingCosineRatio(wo) / leaving / p_class);
+  const vec3 kept = s->weight * (bsdf.shadingCosineRatio(wo) / leaving / p_class);
+  flux_ *= kept;
   if (!isFinite(flux_)) {
     lose(LossReason::kNumerical, flux_);  // deposited long since: only counted
     return false;
   }
-  return leave(*s);
+  return staysUseful(maxComponent(kept)) && leave(*s);
+}
+
+/// Photons that are only gathered tell most where all carry the same: what a surface keeps of their flux, `kept`,
+/// becomes the chance to go on.
+bool LightPath::staysUseful(float kept) {
+  if (context_->connect_indirect || kept >= 1.0F) return true;
+  if (kept <= 0.0F || sampler_.next1D() >= kept) return false;
+  flux_ /= kept;
+  return true;
 }
 
 bool LightPath::leave(const BsdfSample& s) {

@@ -47,10 +47,11 @@ class CameraConnections {
 struct LightPathContext {
   const ReferenceWorld& world;
   const std::vector<bool>& is_target;  ///< by instance
-  bool continue_after_diffuse;
-  bool keep_deposits;
-  bool connect_caustics;  ///< L S⁺ D E; what follows on it is always connected
-  FootprintScale spread;  ///< of footprints; of caustics, never of what they light in turn
+  bool connect_indirect;               ///< L S … D … D E
+  bool connect_caustics;               ///< L S⁺ D E
+  bool keep_caustic_deposits;          ///< where photons first meet a diffuse surface
+  bool keep_indirect_deposits;         ///< where some do so again
+  FootprintScale spread;               ///< of footprints; of caustics, never of what they light in turn
   PhotonTally& tally;
   CameraConnections& connections;
   const VcmTechniques* vcm = nullptr;  ///< null: photons carry no weights
@@ -87,7 +88,9 @@ class LightPath {
   bool scatterDiffuse(const Bsdf& bsdf, float p_class, vec3 wo);
   bool leave(const BsdfSample& s);
   bool survives();
+  bool staysUseful(float kept);
   void deposit(vec3 weighted, vec3 wo);
+  void depositAgain(vec3 weighted);
   void connectToCamera(const Bsdf& bsdf, vec3 wo);
   VcmSurface surface() const { return VcmSurface::ofEncounter(encounter_, context_->world.options.specular_alpha); }
 
@@ -98,6 +101,7 @@ class LightPath {
   Encounter encounter_;
   Stage stage_ = Stage::kEmitted;
   bool alive_ = true;
+  bool deposits_again_ = false;  ///< was drawn to leave deposits after its first
   int bounce_ = 0;
   vec3 flux_;  ///< without the weight of its wavelengths
   vec3 emitted_;

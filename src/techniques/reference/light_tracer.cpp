@@ -58,8 +58,7 @@ class GroupTracer {
 
 }  // namespace
 
-LightTracer::LightTracer(const ReferenceWorld& world, bool continue_after_diffuse, bool keep_deposits)
-    : world_(world), continue_after_diffuse_(continue_after_diffuse), keep_deposits_(keep_deposits) {
+LightTracer::LightTracer(const ReferenceWorld& world, const PhotonPaths& connect) : world_(world), connect_(connect) {
   const SceneData& data = world.scene.scene();
   const std::vector<Classification> classes = classifyMaterials(data, world.options.specular_alpha);
   for (const Instance& instance : data.instances) {
@@ -115,9 +114,16 @@ void LightTracer::emit(std::size_t emitter, std::uint32_t begin, std::uint32_t e
 void LightTracer::trace(std::size_t emitter, const PhotonWave& wave, std::uint32_t begin, std::uint32_t end,
                         const FootprintScale& spread, PhotonTally& tally) const {
   CameraConnections connections(world_.walker, view_, tally);
-  const LightPathContext context{world_,         is_target_,        continue_after_diffuse_,
-                                 keep_deposits_, connect_caustics_, view_ ? spread : FootprintScale{},
-                                 tally,          connections,       vcm_};
+  const LightPathContext context{.world = world_,
+                                 .is_target = is_target_,
+                                 .connect_indirect = connect_.indirect,
+                                 .connect_caustics = connect_.caustic,
+                                 .keep_caustic_deposits = keep_deposits_,
+                                 .keep_indirect_deposits = keep_indirect_deposits_,
+                                 .spread = view_ ? spread : FootprintScale{},
+                                 .tally = tally,
+                                 .connections = connections,
+                                 .vcm = vcm_};
   const std::function<vec3(std::uint64_t)> normal_of = [&](std::uint64_t p) { return lightNormalOf(emitter, p); };
   GroupTracer group(context, *emitters_[emitter], normal_of);
   for (std::size_t i = begin; i < end; i += kGroupPhotons)
@@ -129,7 +135,15 @@ std::optional<FootprintSplat> LightTracer::findLanding(std::size_t emitter, cons
                                                        const FootprintScale& spread) const {
   PhotonTally tally;
   CameraConnections connections(world_.walker, nullptr, tally);
-  const LightPathContext context{world_, is_target_, false, false, true, spread, tally, connections};
+  const LightPathContext context{.world = world_,
+                                 .is_target = is_target_,
+                                 .connect_indirect = false,
+                                 .connect_caustics = true,
+                                 .keep_caustic_deposits = false,
+                                 .keep_indirect_deposits = false,
+                                 .spread = spread,
+                                 .tally = tally,
+                                 .connections = connections};
   LightPath path(context, *emitters_[emitter], photon.emitted, photon.sampler);
   while (path.alive()) {
     RayHit hit;

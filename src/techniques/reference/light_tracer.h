@@ -3,7 +3,8 @@
 //
 // Makes the paths L S … D E: the caustic (L S⁺ D E) and what a caustic lights in turn (L S … D E with further D).
 // Unbiased, no kernel: a photon counts for the one pixel that sees it.
-// Limits: only what the camera sees directly or through panes; a caustic in a mirror is the path tracer's.
+// Only what the camera sees directly or through panes; for what is seen in mirrors and through glass photons leave
+// deposits, which paths from the eye gather (see gathered_photons.h).
 #pragma once
 
 #include <cstdint>
@@ -13,6 +14,7 @@
 #include <vector>
 
 #include "techniques/reference/footprint_splat.h"
+#include "techniques/reference/path_class.h"
 #include "techniques/reference/photon_tally.h"
 #include "techniques/reference/photon_wave.h"
 #include "techniques/reference/vcm/techniques.h"
@@ -22,11 +24,14 @@ namespace nephroid {
 
 class LightTracer {
  public:
-  /// @param continue_after_diffuse  also trace what a caustic lights in turn
-  /// @param keep_deposits           list where caustic photons end, for those who gather them
-  LightTracer(const ReferenceWorld& world, bool continue_after_diffuse, bool keep_deposits = false);
-  /// From now on caustics (L S⁺ D E) are left to those who gather deposits; what they light in turn is not.
-  void leaveCausticsToGathering() { connect_caustics_ = false; }
+  /// @param connect  of L S⁺ D E and L S … D … D E those that are connected to the camera
+  LightTracer(const ReferenceWorld& world, const PhotonPaths& connect);
+  /// From now on photons are listed where they meet diffuse surfaces, for those who gather them.
+  /// @param indirect_too  not only where they do so first; an unbiased share of them
+  void keepDeposits(bool indirect_too) {
+    keep_deposits_ = true;
+    keep_indirect_deposits_ = indirect_too;
+  }
   /// From now on photons carry weights of vertex connection and merging, and leave their vertices in the tally.
   /// @param techniques  must outlive all that is traced
   void carryWeights(const VcmTechniques* techniques) { vcm_ = techniques; }
@@ -60,7 +65,8 @@ class LightTracer {
   vec3 lightNormalOf(std::size_t emitter, std::uint64_t photon) const;
 
   const ReferenceWorld& world_;
-  bool continue_after_diffuse_, keep_deposits_, connect_caustics_ = true;
+  PhotonPaths connect_;
+  bool keep_deposits_ = false, keep_indirect_deposits_ = false;
   const ReceiverView* view_ = nullptr;
   const VcmTechniques* vcm_ = nullptr;
   std::vector<bool> is_target_;

@@ -57,7 +57,7 @@ LightTracingMeasurement measureLightTracing(const SceneData& scene, const Camera
                                             int repetitions) {
   constexpr int kWidth = 1024, kHeight = 768;
   ReferenceWorld world(scene, camera, kWidth, kHeight, ReferenceOptions{});
-  const LightTracer tracer(world, false);
+  const LightTracer tracer(world, PhotonPaths{.caustic = true});
   LightTracingMeasurement m;
   m.triangle_count = scene.triangleCount();
   m.threads = availableThreads();

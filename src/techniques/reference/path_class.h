@@ -34,6 +34,7 @@ class PathClass {
     }
     last_specular_ = specular;
     ++count_;
+    if (!specular) ++diffuse_count_;
   }
   PathClass with(EventClass event) const {
     PathClass copy = *this;
@@ -55,12 +56,30 @@ class PathClass {
   bool isEyeSpecular() const { return stage_ == Stage::kEyeSide; }
   /// L S … D E: found by light tracing, whose photons first meet something specular and end on what the eye sees.
   bool isLightTraced() const { return firstIsDiffuse() && last_specular_; }
+  /// L S … D … D S⁺ E, at least two D: what a caustic lights in turn, seen in a mirror or through glass. From the eye:
+  /// S⁺, then D, then anything with a further D in it, then S. A photon leaves its light by S and has met a D before it
+  /// comes to the D that the eye meets first; each such path has one such D, so it is gathered once.
+  bool isSpecularIndirect() const { return first_specular_ && last_specular_ && diffuse_count_ > 1; }
 
  private:
   enum class Stage : std::uint8_t { kEyeSide, kReceiver, kLightSide, kOther };
-  int count_ = 0;
+  int count_ = 0, diffuse_count_ = 0;
   bool first_specular_ = false, last_specular_ = false, later_all_specular_ = true;
   Stage stage_ = Stage::kOther;
+};
+
+/// Kinds of paths whose light begins with S, by whether photons make them; what they do not make, paths from the eye
+/// find by chance.
+struct PhotonPaths {
+  bool caustic = false;            ///< L S⁺ D E
+  bool indirect = false;           ///< L S … D … D E
+  bool specular_caustic = false;   ///< L S⁺ D S⁺ E
+  bool specular_indirect = false;  ///< L S … D … D S⁺ E
+
+  bool include(const PathClass& path) const {
+    if (path.isLightTraced()) return path.layer() == PathLayer::kCaustic ? caustic : indirect;
+    return (specular_caustic && path.isSpecularCaustic()) || (specular_indirect && path.isSpecularIndirect());
+  }
 };
 
 }  // namespace nephroid

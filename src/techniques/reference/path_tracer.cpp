@@ -3,8 +3,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "techniques/reference/path_class.h"
-
 namespace nephroid {
 namespace {
 
@@ -20,13 +18,14 @@ float powerHeuristic(float pdf, float other) {
 /// One path on its way from the eye.
 class EyePath {
  public:
-  EyePath(const ReferenceWorld& world, const LayerNeeds& needs, const PhotonGrid* caustics, bool gather_direct,
-          bool leave_caustics, Film& film, PathCounters& counters, std::size_t pixel, Sampler sampler)
+  EyePath(const ReferenceWorld& world, const LayerNeeds& needs, const GatheredPhotons* photons,
+          const PhotonPaths& gathered, const PhotonPaths& left, Film& film, PathCounters& counters, std::size_t pixel,
+          Sampler sampler)
       : world_(world),
         needs_(needs),
-        caustics_(caustics),
-        gather_direct_(gather_direct),
-        leave_caustics_(leave_caustics),
+        photons_(photons),
+        gathered_(gathered),
+        left_(left),
         film_(film),
         counters_(counters),
         pixel_(pixel),
@@ -77,37 +76,63 @@ class EyePath {
     if (!bsdf.isClear()) settleWavelength(state_, encounter_);
     for (const EventClass c : {EventClass::kSpecular, EventClass::kDiffuse})
       if (bsdf.isEvaluable(c) && isWanted(class_.with(c))) connectToLight(bsdf, c);
-    const bool gathers = class_.isEyeSpecular() || (gather_direct_ && class_.count() == 0);
-    if (caustics_ && gathers && bsdf.hasDiffuse()) gatherCaustic(bsdf);
+    if (photons_ && bsdf.hasDiffuse()) gather(bsdf);
     return sampleNext(bsdf);
   }
 
+  void gather(const Bsdf& bsdf) {
+    if (class_.count() == 0 ? gathered_.caustic : gathered_.specular_caustic && class_.isEyeSpecular())
+      gatherCaustic(bsdf);
+    if (gathered_.specular_indirect && class_.isEyeSpecular()) gatherIndirect(bsdf);
+  }
+
+  /// What a search finds, times the kernel's area.
+  struct Gathered {
+    vec3 radiance{0.0F};
+    vec3 irradiance{0.0F};  ///< where it is seen directly
+    vec3 inner{0.0F};       ///< radiance of the half of the kernel about the point
+  };
   /// Density of photons about the point, by a disc on its plane.
-  void gatherCaustic(const Bsdf& bsdf) {
+  Gathered gatherFrom(const PhotonGrid& grid, const Bsdf& bsdf) {
     const SurfacePoint& point = encounter_.point;
-    const float radius = caustics_->radius();
-    vec3 radiance(0.0F), irradiance(0.0F), inner(0.0F);  // times the kernel's area; `inner`: radiance of half of it
-    caustics_->visitNear(point.position, [&](const GridPhoton& photon) {
+    const float radius = grid.radius();
+    Gathered found;
+    const bool seen_directly = class_.count() == 0;
+    // A photon of another surface nearby would leak light around edges.
+    grid.visitDisc(point.position, point.normal_geometric, kKernelFlatness, [&](const GridPhoton& photon) {
       const vec3 wi = -photon.dir, offset = photon.position - point.position;
-      const float off_plane = std::abs(dot(offset, point.normal_geometric));
-      // A photon of another surface nearby would leak light around edges.
-      if (off_plane > kKernelFlatness * radius) return;
       const vec3 value =
           photon.flux * bsdf.evaluate(EventClass::kDiffuse, wi, Transport::kRadiance).f * bsdf.shadingCosineRatio(wi);
-      radiance += value;
-      if (dot(offset, offset) <= 0.5F * radius * radius) inner += value;
+      found.radiance += value;
+      if (dot(offset, offset) <= 0.5F * radius * radius) found.inner += value;
       // As for light that is connected to the camera: on the side that the eye sees.
-      if (dot(wi, point.normal_geometric) * dot(state_.ray.dir, point.normal_geometric) < 0.0F)
-        irradiance += photon.flux * bsdf.shadingCosineRatio(wi);
+      if (seen_directly && dot(wi, point.normal_geometric) * dot(state_.ray.dir, point.normal_geometric) < 0.0F)
+        found.irradiance += photon.flux * bsdf.shadingCosineRatio(wi);
     });
-    const float inverse_area = 1.0F / (kPi * radius * radius);
-    add(class_.with(EventClass::kDiffuse).with(EventClass::kSpecular), throughput_ * radiance * inverse_area,
-        class_.count() == 0 ? irradiance * inverse_area : vec3(0.0F), true);
+    return found;
+  }
+
+  void gatherCaustic(const Bsdf& bsdf) {
+    const PhotonGrid& grid = photons_->caustics();
+    if (grid.empty()) return;
+    const Gathered found = gatherFrom(grid, bsdf);
+    const float inverse_area = 1.0F / (kPi * grid.radius() * grid.radius());
+    record(class_.with(EventClass::kDiffuse).with(EventClass::kSpecular), throughput_ * found.radiance * inverse_area,
+           found.irradiance * inverse_area);
     if (!film_.specular_caustic_bias.active() || !class_.isEyeSpecular()) return;
     // Where light varies smoothly a kernel errs in proportion to its area (Knaus & Zwicker 2011), so by twice what the
     // whole says more than its half.
-    const vec3 bias = 2.0F * state_.hero.weight * throughput_ * inverse_area * (radiance - 2.0F * inner);
+    const vec3 bias = 2.0F * state_.hero.weight * throughput_ * inverse_area * (found.radiance - 2.0F * found.inner);
     if (isFinite(bias)) film_.specular_caustic_bias.add(pixel_, bias);
+  }
+
+  void gatherIndirect(const Bsdf& bsdf) {
+    const PhotonGrid& grid = photons_->indirect();
+    if (grid.empty()) return;
+    const float inverse_area = 1.0F / (kPi * grid.radius() * grid.radius());
+    const PathClass path =
+        class_.with(EventClass::kDiffuse).with(EventClass::kDiffuse).with(EventClass::kSpecular);  // for one
+    record(path, throughput_ * gatherFrom(grid, bsdf).radiance * inverse_area, vec3(0.0F));
   }
 
   /// Can a path that begins with these events still end in a layer that was asked for?
@@ -116,11 +141,10 @@ class EyePath {
     if (!c.firstIsDiffuse()) return needs_.throughSpecular();
     // Light that is met by chance counts in part for what was sampled towards lights, so it has to be looked for.
     if (c.count() == 1 && needs_.direct) return true;
-    return needs_.beyondDiffuse() || (!world_.options.light_tracing && (needs_.caustic || needs_.irradiance_caustic));
+    return needs_.beyondDiffuse() || (!left_.caustic && (needs_.caustic || needs_.irradiance_caustic));
   }
   bool isWanted(const PathClass& c) const {
-    if (world_.options.light_tracing && c.isLightTraced()) return false;
-    if (leave_caustics_ && c.isSpecularCaustic()) return false;
+    if (left_.include(c)) return false;
     if (c.firstIsDiffuse() && (needs_.irradiance || needs_.irradiance_caustic)) return true;
     return mayContribute(c) || c.layer() == PathLayer::kDirect;
   }
@@ -197,11 +221,12 @@ class EyePath {
     return true;
   }
 
-  void add(const PathClass& path, vec3 radiance, vec3 irradiance, bool gathered = false) {
-    if (!gathered) {
-      if (world_.options.light_tracing && path.isLightTraced()) return;
-      if (leave_caustics_ && path.isSpecularCaustic()) return;
-    }
+  /// What was found by chance.
+  void add(const PathClass& path, vec3 radiance, vec3 irradiance) {
+    if (!left_.include(path)) record(path, radiance, irradiance);
+  }
+
+  void record(const PathClass& path, vec3 radiance, vec3 irradiance) {
     radiance *= state_.hero.weight;
     irradiance *= state_.hero.weight;
     if (!isFinite(radiance) || !isFinite(irradiance)) {
@@ -235,9 +260,9 @@ class EyePath {
 
   const ReferenceWorld& world_;
   const LayerNeeds& needs_;
-  const PhotonGrid* caustics_;
-  bool gather_direct_;
-  bool leave_caustics_;  ///< L S⁺ D S⁺ E is gathered here, or made elsewhere
+  const GatheredPhotons* photons_;
+  const PhotonPaths& gathered_;
+  const PhotonPaths& left_;  ///< gathered here, or made elsewhere
   Film& film_;
   PathCounters& counters_;
   std::size_t pixel_;
@@ -259,7 +284,7 @@ void PathTracer::tracePath(int x, int y, std::uint32_t sample, Film& film, PathC
   const auto pixel = static_cast<std::size_t>(y) * film.width + x;
   Sampler sampler(world_.options.seed, static_cast<std::uint32_t>(pixel), sample);
   const vec2 jitter = sampler.next2D();
-  EyePath path(world_, needs_, caustics_, gather_direct_, leave_caustics_, film, counters, pixel, sampler);
+  EyePath path(world_, needs_, photons_, gathered_, left_, film, counters, pixel, sampler);
   path.trace(vec2(static_cast<float>(x), static_cast<float>(y)) + jitter);
 }
 

@@ -1,18 +1,21 @@
 // Path tracing from the eye with next-event estimation and multiple importance sampling (Kajiya 1986; Veach 1997).
 //
-// Makes every layer but the paths L S … D E, which light tracing finds far faster (see light_tracer.h); with
-// `light_tracing` off it makes those too, where lights have a size. Each class of events (S, D) is its own integrand
-// with its own weights, so that a contribution always belongs to exactly one layer.
-// Caustics in mirrors and through glass, L S⁺ D S⁺ E, are gathered from photons where a path from the eye ends on D
-// (progressive photon mapping in the form of Knaus & Zwicker 2011): biased by the kernel's width, which shrinks.
-// Limits: point lights and suns without a size cannot be met by chance, so other paths L S … S E are black for them.
+// Makes every path but those that are left to photons, which find light that begins with S far faster (PhotonPaths);
+// where lights have a size it can make those too. Each class of events (S, D) is its own integrand with its own
+// weights, so that a contribution always belongs to exactly one layer.
+// Caustics in mirrors and through glass, L S⁺ D S⁺ E, and what they light in turn, L S … D … D S⁺ E, are gathered from
+// photons where a path from the eye first meets D (progressive photon mapping in the form of Knaus & Zwicker 2011):
+// biased by the kernel's width, which shrinks.
+// Limits: point lights and suns without a size cannot be met by chance, so what begins with S and is not left to
+// photons is black for them.
 #pragma once
 
 #include <cstdint>
 
 #include "techniques/reference/film.h"
+#include "techniques/reference/gathered_photons.h"
+#include "techniques/reference/path_class.h"
 #include "techniques/reference/world.h"
-#include "trace/photon_grid.h"
 
 namespace nephroid {
 
@@ -24,24 +27,22 @@ struct PathCounters {
 class PathTracer {
  public:
   PathTracer(const ReferenceWorld& world, const LayerNeeds& needs) : world_(world), needs_(needs) {}
-  /// From now on L S⁺ D S⁺ E is gathered from these photons (flux in W) and not looked for by chance; `grid` must
-  /// outlive the paths and may be empty.
-  /// @param direct_too  L S⁺ D E as well
-  void gatherFrom(const PhotonGrid* grid, bool direct_too) {
-    caustics_ = grid;
-    gather_direct_ = direct_too;
-    leave_caustics_ = true;
+  /// From now on these paths are not looked for by chance.
+  void leaveToPhotons(const PhotonPaths& paths) { left_ = paths; }
+  /// From now on these photons are gathered; they must outlive the paths and may be none.
+  /// @param paths  which of L S⁺ D E, L S⁺ D S⁺ E and L S … D … D S⁺ E
+  void gatherFrom(const GatheredPhotons* photons, const PhotonPaths& paths) {
+    photons_ = photons;
+    gathered_ = paths;
   }
-  /// From now on L S⁺ D S⁺ E is left to others.
-  void leaveCaustics() { leave_caustics_ = true; }
   /// One path through pixel (x, y), added to the film. Safe from any thread as long as no two share a pixel.
   void tracePath(int x, int y, std::uint32_t sample, Film& film, PathCounters& counters) const;
 
  private:
   const ReferenceWorld& world_;
   const LayerNeeds& needs_;
-  const PhotonGrid* caustics_ = nullptr;
-  bool gather_direct_ = false, leave_caustics_ = false;
+  const GatheredPhotons* photons_ = nullptr;
+  PhotonPaths left_, gathered_;
 };
 
 }  // namespace nephroid

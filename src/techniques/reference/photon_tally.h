@@ -43,7 +43,9 @@ struct PhotonTally {
   std::vector<FootprintSplat> footprints;
   std::vector<VcmPhoton> vcm_photons;               ///< where they ended, for vertex connection and merging
   std::vector<VcmLightVertex> vcm_rough, vcm_ends;  ///< interfaces on the way, and ends, that may be connected
-  std::vector<GridPhoton> deposits;  ///< caustic photons where they ended, if they are kept; flux × emitted count
+  // Photons where they met a diffuse surface, if they are kept; flux × emitted count.
+  std::vector<GridPhoton> caustic_deposits;   ///< for the first time
+  std::vector<GridPhoton> indirect_deposits;  ///< later
 };
 
 }  // namespace nephroid

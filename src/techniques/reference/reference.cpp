@@ -6,7 +6,6 @@
 #include <atomic>
 #include <bit>
 #include <chrono>
-#include <cmath>
 #include <filesystem>
 #include <memory>
 #include <system_error>
@@ -29,10 +28,6 @@
 namespace nephroid {
 namespace {
 
-/// Photons under the first kernel, were they spread evenly: fewer is noise, more is blur.
-constexpr float kGatherPhotons = 10.0F;
-/// Share of the photons that a shrinking kernel keeps; 2/3 balances bias and variance (Knaus & Zwicker 2011).
-constexpr double kRadiusAlpha = 2.0 / 3.0;
 /// Budgets when none is given: a few seconds for a picture of half a megapixel.
 constexpr std::uint64_t kDefaultSamples = 32;
 constexpr std::uint64_t kDefaultPhotons = 2'000'000;
@@ -74,18 +69,26 @@ class ReferenceRender {
         path_needs_(estimator_ == Estimator::kVcm ? needs_.withoutCaustics() : needs_),
         path_tracer_(world_, path_needs_),
         passes_(settings.width, settings.height) {
-    const bool from_lights = world_.options.light_tracing, connects_and_merges = estimator_ == Estimator::kVcm;
+    const bool from_lights = estimator_ != Estimator::kPath, connects_and_merges = estimator_ == Estimator::kVcm;
     if (connects_and_merges) checkVcm(scene, !errors_.empty());
     const bool gather_direct = estimator_ == Estimator::kPhotonMap && (needs_.caustic || needs_.irradiance_caustic);
     const bool photons_reach_eye = from_lights && (gather_direct || needs_.throughSpecular());
     const bool gather = photons_reach_eye && !connects_and_merges;
     if ((from_lights && needs_.lightTraced()) || photons_reach_eye)
-      light_tracer_ = std::make_unique<LightTracer>(world_, needs_.indirect || needs_.irradiance, gather);
+      light_tracer_ = std::make_unique<LightTracer>(
+          world_, PhotonPaths{.caustic = !gather_direct && (needs_.caustic || needs_.anyIrradiance()),
+                              .indirect = needs_.indirect || needs_.irradiance});
     if (light_tracer_ && light_tracer_->emitters().empty()) light_tracer_.reset();
     gather_ = gather && light_tracer_;
-    if (gather_) path_tracer_.gatherFrom(&caustics_, gather_direct);
-    if (light_tracer_ && gather_direct) light_tracer_->leaveCausticsToGathering();
-    if (connects_and_merges) path_tracer_.leaveCaustics();
+    PhotonPaths from_photons = photonPathsOf(estimator_);
+    if (gather && !gather_) from_photons.specular_caustic = from_photons.specular_indirect = false;
+    path_tracer_.leaveToPhotons(from_photons);
+    if (gather_) {
+      light_tracer_->keepDeposits(needs_.specular);
+      path_tracer_.gatherFrom(&gathered_, {.caustic = gather_direct,
+                                           .specular_caustic = needs_.throughSpecular(),
+                                           .specular_indirect = needs_.specular});
+    }
     if (connects_and_merges && light_tracer_) vcm_ = std::make_unique<Vcm>(world_, *light_tracer_, needs_);
     if (light_tracer_) shareLedgers();
     if (settings.target_error > 0.0 && errors_.empty())
@@ -124,7 +127,6 @@ class ReferenceRender {
     ReferenceOptions options;
     options.specular_alpha = settings.params.getFloat("specular-alpha");
     options.max_bounces = settings.params.getInt("max-bounces");
-    options.light_tracing = estimatorOf(settings) != Estimator::kPath;
     if (const int bands = settings.params.getInt("bands"); bands > 0) options.spectral.bands = makeBands(bands);
     options.seed = foldSeed(settings.seed);
     return options;
@@ -293,37 +295,7 @@ class ReferenceRender {
     if (gather_ && !errors_.empty()) errors_.closeEyeBatches(passes_.done());
     estimateErrors();
     samples_at_photons_ = samples_done_;
-    if (!gather_) return;
-    const std::vector<GridPhoton> deposits = collectDeposits();
-    shrinkKernel(deposits);
-    replaceCaustics(deposits);
-  }
-
-  std::vector<GridPhoton> collectDeposits() const {
-    std::vector<GridPhoton> deposits;
-    for (const PhotonBatch::Chunk& chunk : std::as_const(*photon_batch_).chunks()) {
-      for (GridPhoton photon : chunk.tally.deposits) {
-        photon.flux *= photon_batch_->scaleOf(chunk);
-        deposits.push_back(photon);
-      }
-    }
-    return deposits;
-  }
-
-  /// The photons of the latest batch, under a kernel that shrinks from batch to batch (Knaus & Zwicker 2011, eq. 15):
-  /// the mean over batches then converges although each batch is blurred.
-  void shrinkKernel(const std::vector<GridPhoton>& deposits) {
-    if (radius_squared_ == 0.0) {
-      const double radius = chooseGatherRadius(deposits, kGatherPhotons);
-      radius_squared_ = radius * radius;
-    } else {
-      const double k = static_cast<double>(batches_done_ - 1);
-      radius_squared_ *= (k + kRadiusAlpha) / (k + 1.0);
-    }
-  }
-  void replaceCaustics(const std::vector<GridPhoton>& deposits) {
-    const auto radius = static_cast<float>(std::sqrt(radius_squared_));
-    caustics_ = radius > 0.0F ? PhotonGrid(deposits, radius) : PhotonGrid();
+    if (gather_) gathered_.take(*photon_batch_, batches_done_);
   }
 
   void addSplat(const Splat& splat, std::uint32_t pixel, std::span<const float> weights) {
@@ -366,7 +338,8 @@ class ReferenceRender {
     for (std::uint64_t* count : {&samples_done_, &photons_done_, &batches_done_, &samples_at_photons_, &path_rays_,
                                  &light_rays_, &not_finite_})
       state.value(*count);
-    for (double* number : {&radius_squared_, &path_seconds_, &light_seconds_}) state.value(*number);
+    gathered_.visitState(state);
+    for (double* number : {&path_seconds_, &light_seconds_}) state.value(*number);
   }
 
   /// A full disk does not end a render: what is in memory is worth more than its copy.
@@ -400,7 +373,7 @@ class ReferenceRender {
     if (vcm_) vcm_->prepareBatch(batches_done_ - 1);
     if (!photon_batch_->trace(batches_done_ - 1, [&] { return stopped(); })) return;
     if (vcm_) vcm_->takeBatch(batches_done_ - 1, *photon_batch_);
-    if (gather_) replaceCaustics(collectDeposits());
+    if (gather_) gathered_.retake(*photon_batch_);
   }
 
   void shareLedgers() {
@@ -478,13 +451,15 @@ class ReferenceRender {
       result.notes.push_back(
           fmt::format("caustics of '{}': each photon spread over its footprint, overlap {:g} N^(1/3)",
                       light_tracer_->emitters()[e]->name(), footprints_.overlaps[e]));
-    if (any_delta && needs_.throughSpecular())
-      result.notes.emplace_back(gather_ || vcm_ || !light_tracer_
-                                    ? "light of sources without a size that returns through mirrors or glass after two "
-                                      "or more diffuse bounces is missing"
-                                    : "caustics in mirrors and through glass are missing under lights without a size: "
-                                      "give them extras.radius or extras.angle");
-    if (any_delta && !world_.options.light_tracing && needs_.caustic)
+    if (any_delta && vcm_ && needs_.specular)
+      result.notes.emplace_back(
+          "light of sources without a size that returns through mirrors or glass after two or more diffuse bounces is "
+          "missing: estimator=vcm does not gather it");
+    if (any_delta && estimator_ == Estimator::kPath && needs_.throughSpecular())
+      result.notes.emplace_back(
+          "caustics in mirrors and through glass, and what they light in turn, are missing under lights without a "
+          "size: give them extras.radius or extras.angle");
+    if (any_delta && estimator_ == Estimator::kPath && needs_.caustic)
       result.notes.emplace_back("estimator=path finds no caustic of lights without a size");
     if (!layersWithError(settings_.layers, settings_.target_error).empty() && errors_.batches() < 2)
       result.notes.emplace_back("standard errors are infinite: they take two batches at least; raise the budget");
@@ -525,8 +500,7 @@ class ReferenceRender {
   std::vector<StageTime> stages_;
   EyePasses passes_;
   bool gather_ = false;
-  PhotonGrid caustics_;
-  double radius_squared_ = 0.0;
+  GatheredPhotons gathered_;
   std::uint64_t samples_budget_ = 0, photons_budget_ = 0, samples_done_ = 0, photons_done_ = 0, batches_done_ = 0;
   std::uint64_t path_rays_ = 0, light_rays_ = 0, not_finite_ = 0;
   ErrorEstimate::OfLayer error_;        ///< at the last closed batches; only where errors steer

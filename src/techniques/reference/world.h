@@ -16,7 +16,6 @@ namespace nephroid {
 struct ReferenceOptions {
   float specular_alpha = kDefaultSpecularAlpha;
   int max_bounces = 64;
-  bool light_tracing = true;  ///< false: every layer from the eye alone
   SpectralMode spectral;
   std::uint32_t seed = 0;
 };

@@ -25,7 +25,7 @@ class FootprintTest : public testing::Test {
     scene_ = std::move(scene);
     camera_ = makeCamera("above", vec3(3.5F, 5.0F, 3.0F), vec3(0.6F, 0, 0.5F), radians(40));
     world_ = std::make_unique<ReferenceWorld>(scene_, camera_, kSize, kSize, ReferenceOptions{});
-    tracer_ = std::make_unique<LightTracer>(*world_, false);
+    tracer_ = std::make_unique<LightTracer>(*world_, PhotonPaths{.caustic = true});
     view_ = std::make_unique<ReceiverView>(*world_);
     tracer_->spreadOver(view_.get());
   }

@@ -2,7 +2,11 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <iterator>
+#include <string>
 #include <string_view>
+#include <vector>
 
 namespace nephroid {
 namespace {
@@ -36,6 +40,55 @@ TEST(PathClass, SpecularCausticIsLightSpecularReceiverSpecularEye) {
 TEST(PathClass, LightTracingTakesWhatBeginsSpecularAndEndsDiffuse) {
   for (const char* yes : {"DS", "DSS", "DDS", "DSDS"}) EXPECT_TRUE(classOf(yes).isLightTraced()) << yes;
   for (const char* no : {"", "D", "S", "DD", "SDS", "DSD"}) EXPECT_FALSE(classOf(no).isLightTraced()) << no;
+}
+
+TEST(PathClass, SpecularIndirectBeginsAndEndsSpecularWithTwoDiffuseOrMore) {
+  for (const char* yes : {"SDDS", "SSDDS", "SDSDS", "SDDDS", "SDDSS", "SDSDSS"})
+    EXPECT_TRUE(classOf(yes).isSpecularIndirect()) << yes;
+  for (const char* no : {"", "S", "SS", "SD", "SDS", "SDD", "SDSD", "DDS", "DSDS"})
+    EXPECT_FALSE(classOf(no).isSpecularIndirect()) << no;
+}
+
+/// Every string of up to six events.
+std::vector<std::string> allStrings() {
+  std::vector<std::string> strings{""};
+  for (std::size_t i = 0; strings[i].size() < 6; ++i)
+    for (const char event : {'S', 'D'}) strings.push_back(strings[i] + event);
+  return strings;
+}
+
+TEST(PhotonPaths, TogetherAreAllThatBeginSpecularAtTheLightAndMeetADiffuseSurface) {
+  const PhotonPaths all{true, true, true, true};
+  for (const std::string& events : allStrings()) {
+    const bool expected = events.ends_with('S') && events.find('D') != std::string::npos;
+    EXPECT_EQ(all.include(classOf(events)), expected) << events;
+    EXPECT_FALSE(PhotonPaths{}.include(classOf(events))) << events;
+  }
+}
+
+TEST(PhotonPaths, ShareNoPath) {
+  const PhotonPaths kinds[] = {
+      {.caustic = true}, {.indirect = true}, {.specular_caustic = true}, {.specular_indirect = true}};
+  for (const std::string& events : allStrings()) {
+    const auto count = std::count_if(std::begin(kinds), std::end(kinds),
+                                     [&](const PhotonPaths& k) { return k.include(classOf(events)); });
+    EXPECT_LE(count, 1) << events;
+  }
+}
+
+// What a photon does and where the eye's path ends decide what is gathered: each cut of a path at a D is a candidate,
+// and only the one at the D that the eye meets first after S⁺ is taken.
+TEST(PhotonPaths, SpecularKindsAreGatheredAtExactlyOneVertex) {
+  const PhotonPaths gathered{.specular_caustic = true, .specular_indirect = true};
+  for (const std::string& events : allStrings()) {
+    int cuts = 0;
+    for (std::size_t i = 0; i < events.size(); ++i) {
+      const std::string eye = events.substr(0, i), light = events.substr(i + 1);
+      // Photons leave by S; the eye gathers after mirrors and glass alone.
+      if (events[i] == 'D' && light.ends_with('S') && classOf(eye).isEyeSpecular()) ++cuts;
+    }
+    EXPECT_EQ(cuts, gathered.include(classOf(events)) ? 1 : 0) << events;
+  }
 }
 
 }  // namespace

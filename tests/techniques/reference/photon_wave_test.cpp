@@ -62,7 +62,7 @@ class PhotonBatchTest : public testing::Test {
     scene_.lights.push_back(test::makePoint(vec3(1, 4, 0), vec3(9)));
     camera_ = makeCamera("above", vec3(3, 3, 3), vec3(0), radians(50));
     world_ = std::make_unique<ReferenceWorld>(scene_, camera_, kSize, kSize, ReferenceOptions{});
-    tracer_ = std::make_unique<LightTracer>(*world_, false);
+    tracer_ = std::make_unique<LightTracer>(*world_, PhotonPaths{.caustic = true});
   }
   static constexpr int kSize = 16;
   static constexpr std::size_t kPixels = kSize * kSize;

@@ -109,6 +109,45 @@ TEST(Reference, CausticsThroughGlassAgreeBetweenPhotonsAndPaths) {
   EXPECT_NEAR(a / b, 1.0, 0.03);
 }
 
+/// A slab of glass over a floor between two walls, under a lamp: most of what is seen through the slab is what the
+/// light through it lights in turn.
+SceneData makeLidScene() {
+  SceneData scene;
+  addObject(scene, test::makeFloor(5.0), makeDiffuse(vec3(0.8F)));
+  addObject(scene, makeRectangle("left", dvec3(-1.5, 0.75, 0), dvec3(0, 0.75, 0), dvec3(0, 0, 2.5)),
+            makeDiffuse(vec3(0.8F)));
+  addObject(scene, makeRectangle("back", dvec3(0, 0.75, -1.5), dvec3(0, 0, 2.5), dvec3(0, 0.75, 0)),
+            makeDiffuse(vec3(0.8F)));
+  addObject(scene, makeBox("slab", dvec3(-2.5, 1.5, -2.5), dvec3(2.5, 1.8, 2.5)), makeGlass(1.5F));
+  addObject(scene, makeRectangle("lamp", dvec3(0, 4, 0), dvec3(2.0, 0, 0), dvec3(0, 0, 2.0)), makeLamp(vec3(5.0F)));
+  return scene;
+}
+
+TEST(Reference, WhatCausticsLightSeenThroughGlassAgreesBetweenPhotonsAndPaths) {
+  const SceneData scene = makeLidScene();
+  const std::vector<std::string> layers{"specular", "specular_caustic"};
+  const RenderSettings photons = makeSettings(16, 64, 1 << 18, layers);
+  RenderSettings paths = makeSettings(16, 512, 0, layers);
+  paths.params.set("estimator", "path");
+  // Kernels lose what lies beyond the edges of the floor; the blocks along the walls show it most.
+  expectNear(blockMeans(scene, photons, "specular"), blockMeans(scene, paths, "specular"), 0.04, 0.01);
+}
+
+TEST(Reference, WhatCausticsLightSeenThroughGlassIsTheSameWithAndWithoutIndirect) {
+  // Where `indirect` is asked for every photon goes on after its first diffuse surface, else an eighth of them.
+  const SceneData scene = makeLidScene();
+  const double alone =
+      test::meanOf(renderReference(scene, test::lookAtCaustic(), makeSettings(16, 64, 1 << 20, {"specular"}))
+                       .image.layers[0]
+                       .image)
+          .x;
+  const double along = test::meanOf(*renderReference(scene, test::lookAtCaustic(),
+                                                     makeSettings(16, 64, 1 << 20, {"specular", "indirect"}))
+                                         .image.find("specular"))
+                           .x;
+  EXPECT_NEAR(alone / along, 1.0, 0.01);
+}
+
 TEST(Reference, SunWithASizeAgreesBetweenEstimators) {
   SceneData scene = test::makeBallScene(makeMetal(vec3(0.9F)), 256);
   scene.lights.push_back(test::makeSun(vec3(-0.4F, -1, -0.2F), vec3(3.0F), 60.0F));
@@ -158,7 +197,7 @@ TEST(Reference, LedgerClosesForEveryKindOfMaterialAndLight) {
     scene.lights.push_back(test::makeSun(vec3(-0.4F, -1, -0.2F), vec3(3.0F), 0.5F));
     scene.lights.push_back(test::makePoint(vec3(2, 4, 1), vec3(9.0F, 5.0F, 1.0F)));
     const RenderResult result =
-        renderReference(scene, lookFromAbove(), makeSettings(16, 1, 50000, {"caustic", "indirect"}));
+        renderReference(scene, lookFromAbove(), makeSettings(16, 1, 50000, {"caustic", "indirect", "specular"}));
     ASSERT_EQ(result.ledgers.size(), 3U);
     for (const Ledger& ledger : result.ledgers) {
       EXPECT_LE(ledger.residual(), 1e-5) << material.name << ' ' << ledger.light;

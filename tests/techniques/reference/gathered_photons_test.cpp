@@ -1,0 +1,47 @@
+// Kernels under which paths from the eye gather photons: how wide the first is.
+#include "techniques/reference/gathered_photons.h"
+
+#include <gtest/gtest.h>
+
+#include <random>
+
+namespace nephroid {
+namespace {
+
+/// Evenly over a square of `side` metres.
+std::vector<GridPhoton> makePlate(int count, float side, unsigned seed) {
+  std::mt19937 random(seed);
+  std::uniform_real_distribution<float> uniform(-0.5F * side, 0.5F * side);
+  std::vector<GridPhoton> photons;
+  for (int i = 0; i < count; ++i)
+    photons.push_back({vec3(uniform(random), 0.0F, uniform(random)), vec3(0, -1, 0), vec3(1.0F)});
+  return photons;
+}
+
+TEST(ChooseTypicalRadius, FindsAboutAsManyAsExpectedAtAnyScaleAndCount) {
+  for (const float side : {0.02F, 2.0F, 200.0F}) {
+    for (const int count : {2000, 100'000}) {
+      const float radius = chooseTypicalRadius(makePlate(count, side, 1), 10);
+      // Of N photons on a plate π r² N / side² are under a disc of radius r. The median of a count of 10 is 9.7.
+      const float expected = side * std::sqrt(10.0F / (kPi * static_cast<float>(count)));
+      EXPECT_NEAR(radius / expected, 1.0F, 0.12F) << side << ' ' << count;
+    }
+  }
+}
+
+TEST(ChooseTypicalRadius, IsNotWidenedByAFewPhotonsFarAway) {
+  std::vector<GridPhoton> photons = makePlate(20'000, 1.0F, 2);
+  const float expected = chooseTypicalRadius(photons, 10);
+  for (const GridPhoton& far : makePlate(400, 1000.0F, 3)) photons.push_back(far);
+  EXPECT_NEAR(chooseTypicalRadius(photons, 10) / expected, 1.0F, 0.12F);
+}
+
+TEST(ChooseTypicalRadius, OfFewPhotonsReachesThemAll) {
+  const std::vector<GridPhoton> two{{vec3(0), vec3(0, -1, 0), vec3(1)}, {vec3(3, 0, 4), vec3(0, -1, 0), vec3(1)}};
+  EXPECT_FLOAT_EQ(chooseTypicalRadius(two, 10), 5.0F);
+  EXPECT_EQ(chooseTypicalRadius({two[0]}, 10), 0.0F);
+  EXPECT_EQ(chooseTypicalRadius({}, 10), 0.0F);
+}
+
+}  // namespace
+}  // namespace nephroid
