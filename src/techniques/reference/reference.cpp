@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <atomic>
-#include <bit>
 #include <chrono>
 #include <filesystem>
 #include <memory>
@@ -17,11 +16,11 @@
 #include "scene/fingerprint.h"
 #include "techniques/layers.h"
 #include "techniques/reference/checkpoint.h"
-#include "techniques/reference/error_estimate.h"
 #include "techniques/reference/estimator.h"
 #include "techniques/reference/geometry_layers.h"
 #include "techniques/reference/path_tracer.h"
 #include "techniques/reference/photon_batch.h"
+#include "techniques/reference/steering.h"
 #include "techniques/reference/vcm/vcm.h"
 #include "techniques/settings.h"
 
@@ -31,15 +30,6 @@ namespace {
 /// Budgets when none is given: a few seconds for a picture of half a megapixel.
 constexpr std::uint64_t kDefaultSamples = 32;
 constexpr std::uint64_t kDefaultPhotons = 2'000'000;
-
-/// Batches that a budget is cut into where errors are estimated: the relative error of a standard error from B batches
-/// is 1/√(2(B − 1)), here 18 %.
-constexpr std::uint64_t kErrorBatches = 16;
-/// Passes from the eye in the first batches of an estimate, at most. Points of the sampler are well spread together, so
-/// that a mean over them errs less than the spread of single ones says: batches of four know of that.
-constexpr std::uint64_t kErrorBatchPasses = 4;
-/// Batches of each direction before an estimate may end a render: of fewer, even the mean over a picture is unsure.
-constexpr std::uint64_t kFirstErrorBatches = 8;
 
 using Clock = std::chrono::steady_clock;
 double secondsSince(Clock::time_point start) { return std::chrono::duration<double>(Clock::now() - start).count(); }
@@ -63,14 +53,12 @@ class ReferenceRender {
         needs_(settings.layers),
         world_(scene, camera, settings.width, settings.height, makeOptions(settings)),
         film_(settings.width, settings.height, needs_),
-        adaptive_(settings.params.getBool("adaptive") && estimator_ != Estimator::kVcm),
-        steered_(settings.target_error > 0.0 || (isTimedOnly() && adaptive_)),
-        errors_(film_, layersToEstimate()),
+        steering_(film_, settings, needs_, settings.params.getBool("adaptive") && estimator_ != Estimator::kVcm),
         path_needs_(estimator_ == Estimator::kVcm ? needs_.withoutCaustics() : needs_),
         path_tracer_(world_, path_needs_),
         passes_(settings.width, settings.height) {
     const bool from_lights = estimator_ != Estimator::kPath, connects_and_merges = estimator_ == Estimator::kVcm;
-    if (connects_and_merges) checkVcm(scene, !errors_.empty());
+    if (connects_and_merges) checkVcm(scene, !steering_.empty());
     const bool gather_direct = estimator_ == Estimator::kPhotonMap && (needs_.caustic || needs_.irradiance_caustic);
     const bool photons_reach_eye = from_lights && (gather_direct || needs_.throughSpecular());
     const bool gather = photons_reach_eye && !connects_and_merges;
@@ -91,7 +79,7 @@ class ReferenceRender {
     }
     if (connects_and_merges && light_tracer_) vcm_ = std::make_unique<Vcm>(world_, *light_tracer_, needs_);
     if (light_tracer_) shareLedgers();
-    if (settings.target_error > 0.0 && errors_.empty())
+    if (settings.target_error > 0.0 && steering_.empty())
       throw UsageError("a target error needs a layer that converges, such as beauty; those asked for are exact");
     chooseBudgets();
     addStage("build", secondsSince(start_));
@@ -132,20 +120,8 @@ class ReferenceRender {
     return options;
   }
 
-  /// Those whose errors were asked for, and without a target those that steer: `beauty`, or else all.
-  std::vector<std::string> layersToEstimate() const {
-    std::vector<std::string> layers = layersWithError(settings_.layers, settings_.target_error);
-    if (settings_.target_error > 0.0 || !steered_) return layers;
-    for (const std::string& layer : settings_.layers) {
-      const bool steers = needs_.beauty ? layer == "beauty" : !planesOf(film_, layer).empty();
-      if (steers && std::find(layers.begin(), layers.end(), layer) == layers.end()) layers.push_back(layer);
-    }
-    return layers;
-  }
-  bool isTimedOnly() const { return settings_.seconds > 0 && settings_.samples == 0 && settings_.photons == 0; }
-
   void chooseBudgets() {
-    const bool open_ended = isTimedOnly() || settings_.target_error > 0.0;
+    const bool open_ended = isTimedOnly(settings_) || settings_.target_error > 0.0;
     constexpr std::uint64_t kUnlimited = std::uint64_t{1} << 62;
     samples_budget_ = settings_.samples ? settings_.samples : open_ended ? kUnlimited : kDefaultSamples;
     photons_budget_ = settings_.photons ? settings_.photons : open_ended ? kUnlimited : kDefaultPhotons;
@@ -160,14 +136,14 @@ class ReferenceRender {
     } else if (light_tracer_) {
       makePhotonBatch(chooseBatchPhotons(photons_budget_ < kUnlimited));
     }
-    error_batch_passes_ = std::clamp<std::uint64_t>(samples_budget_ / kErrorBatches, 1, kErrorBatchPasses);
+    steering_.chooseBatches(samples_budget_);
   }
 
   /// Equal batches, so that each counts the same.
   std::uint32_t chooseBatchPhotons(bool limited) const {
     constexpr std::uint64_t kMax = PhotonBatch::kMaxPhotons;
     if (!limited) return kMax;
-    const std::uint64_t fewest = errors_.empty() ? 1 : std::min(kErrorBatches, photons_budget_);
+    const std::uint64_t fewest = steering_.empty() ? 1 : std::min(Steering::kBatches, photons_budget_);
     const std::uint64_t batches = std::max((photons_budget_ + kMax - 1) / kMax, fewest);
     return static_cast<std::uint32_t>((photons_budget_ + batches - 1) / batches);
   }
@@ -194,7 +170,7 @@ class ReferenceRender {
     if (settings_.target_error > 0.0) {
       // More of one direction alone need not ever lead to the target.
       const bool spent = (samples_budget_ > 0 && !samplesLeft()) || (photons_budget_ > 0 && !photonsLeft());
-      if (spent || (errorIsKnown() && error_.error.total() <= settings_.target_error)) return true;
+      if (spent || steering_.reachesTarget()) return true;
     }
     return timeIsUp();
   }
@@ -216,21 +192,18 @@ class ReferenceRender {
     // What is gathered must have been emitted; otherwise the picture comes first.
     if (samples_done_ == 0) return gather_ && photons_done_ == 0;
     if (photons_done_ == 0) return true;
-    if (steered_ && (settings_.target_error > 0.0 || errorIsKnown())) return photonsLessenError();
+    if (steering_.steers() && (settings_.target_error > 0.0 || steering_.isKnown())) return photonsLessenError();
     if (settings_.seconds > 0) return light_seconds_ <= path_seconds_;
     return share(photons_done_, photons_budget_) <= share(samples_done_, samples_budget_);
   }
-  /// The direction that lessens the error more by another ray: a variance falls by its share per pass, and a pass costs
-  /// rays. Rays, not seconds: equal renders must take equal steps.
   bool photonsLessenError() const {
     // Paths that gather the same photons over and over err alike.
-    if (gather_ && samples_done_ - samples_at_photons_ < error_batch_passes_) return false;
-    if (gather_ && batches_done_ < samples_done_ / error_batch_passes_) return true;
-    if (!errorIsKnown()) return share(photons_done_, kDefaultPhotons) <= share(samples_done_, kDefaultSamples);
-    return error_.error.from_lights * static_cast<double>(path_rays_) >=
-           error_.error.from_eye * static_cast<double>(light_rays_);
+    const std::uint64_t together = steering_.batchPasses();
+    if (gather_ && samples_done_ - samples_at_photons_ < together) return false;
+    if (gather_ && batches_done_ < samples_done_ / together) return true;
+    if (!steering_.isKnown()) return share(photons_done_, kDefaultPhotons) <= share(samples_done_, kDefaultSamples);
+    return steering_.photonsPay(path_rays_, light_rays_);
   }
-  bool errorIsKnown() const { return errors_.batches() >= kFirstErrorBatches; }
 
   static double share(std::uint64_t done, std::uint64_t budget) {
     return static_cast<double>(done) / static_cast<double>(budget);
@@ -238,7 +211,7 @@ class ReferenceRender {
 
   /// A round of paths. If it is stopped, the tiles that are done are remembered, and the next call does the others.
   void tracePaths() {
-    if (!passes_.planned()) planRound();
+    if (!passes_.planned()) steering_.planRound(passes_);
     const bool something = samples_done_ > 0;
     std::atomic<std::uint64_t> rays{0}, not_finite{0};
     passes_.run(
@@ -254,28 +227,8 @@ class ReferenceRender {
     path_rays_ += rays, not_finite_ += not_finite;
     if (passes_.planned()) return;
     ++samples_done_;
-    if (!gather_ || !photonsLeft()) closeEyeBatches();
+    if (!gather_ || !photonsLeft()) steering_.takePaths(passes_);
   }
-  void planRound() {
-    if (!pass_variances_.empty())
-      passes_.planWhereItPays(pass_variances_, static_cast<std::uint32_t>(kErrorBatchPasses));
-    else
-      passes_.planAll();
-  }
-
-  void closeEyeBatches() {
-    if (errors_.empty()) return;
-    errors_.closeFullEyeBatches(passes_.done(), error_batch_passes_);
-    estimateErrors();
-  }
-  void estimateErrors() {
-    if (!steered_) return;
-    const bool by_picture = settings_.target_error <= 0.0 && needs_.beauty;
-    error_ = by_picture ? ErrorEstimate::OfLayer{"beauty", errors_.relMse("beauty")} : errors_.worst();
-    if (adaptive_ && errors_.eyeBatches() >= kFirstErrorBatches)
-      pass_variances_ = errors_.variancesOfPass(error_.layer);
-  }
-
   void tracePhotons() {
     if (vcm_) vcm_->prepareBatch(batches_done_);
     if (!photon_batch_->trace(batches_done_, [&] { return stopped(); })) return;
@@ -290,10 +243,7 @@ class ReferenceRender {
       photons_done_ += static_cast<std::uint64_t>(chunk.tally.ledger.emitted_count);
     }
     ++batches_done_;
-    if (!errors_.empty()) errors_.closeLightBatch(batches_done_);
-    // Paths that gather the same photons belong to the same batch.
-    if (gather_ && !errors_.empty()) errors_.closeEyeBatches(passes_.done());
-    estimateErrors();
+    steering_.takePhotons(passes_, batches_done_, gather_);
     samples_at_photons_ = samples_done_;
     if (gather_) gathered_.take(*photon_batch_, batches_done_);
   }
@@ -332,7 +282,7 @@ class ReferenceRender {
     state.value(batch_photons_);
     if (vcm_) vcm_->visitState(state);
     film_.visitPlanes([&](FilmPlane& plane) { state.values(plane.values()); });
-    errors_.visitState(state);
+    steering_.visitState(state);
     passes_.visitState(state);
     for (Ledger& ledger : ledgers_) ledger.visitState(state);
     for (std::uint64_t* count : {&samples_done_, &photons_done_, &batches_done_, &samples_at_photons_, &path_rays_,
@@ -364,7 +314,7 @@ class ReferenceRender {
           fmt::format("{}: holds other sums than this render has; delete it to begin anew", settings_.checkpoint.path));
     if (light_tracer_) makePhotonBatch(batch_photons_);
     if ((gather_ || vcm_) && batches_done_ > 0) retraceLastBatch();
-    estimateErrors();
+    steering_.estimate();
     result.notes.push_back(fmt::format("went on from {} with {} samples, {:.1f} M photons", settings_.checkpoint.path,
                                        samples_done_, static_cast<double>(photons_done_) * 1e-6));
   }
@@ -394,24 +344,25 @@ class ReferenceRender {
     if (budgets > 0) fraction = std::max(fraction, by_budget / budgets);
     std::string status =
         fmt::format("{} samples, {:.1f} M photons", samples_done_, static_cast<double>(photons_done_) * 1e-6);
-    if (settings_.target_error > 0.0 && errorIsKnown()) {
+    if (settings_.target_error > 0.0 && steering_.isKnown()) {
+      const auto& [layer, error] = steering_.error();
       // The error falls with the inverse of the work.
-      fraction = std::max(fraction, settings_.target_error / error_.error.total());
-      status = fmt::format("{} relMSE {:.2g}, {}", error_.layer, error_.error.total(), status);
+      fraction = std::max(fraction, settings_.target_error / error.total());
+      status = fmt::format("{} relMSE {:.2g}, {}", layer, error.total(), status);
     }
     progress_->update(std::min(fraction, 1.0), status);
   }
 
   /// From sums to pictures.
   void develop(RenderResult& result) {
-    if (!errors_.empty()) errors_.closeEyeBatches(passes_.done());
+    steering_.takeRest(passes_);
     for (const std::string& name : settings_.layers) {
       const auto geometry =
           std::find_if(geometry_.begin(), geometry_.end(), [&](const Layer& l) { return l.name == name; });
       if (geometry != geometry_.end())
         result.image.layers.push_back(std::move(*geometry));
       else if (const std::string_view erring = erringLayer(name); !erring.empty())
-        result.image.layers.push_back({name, errors_.standardError(erring, passes_.done(), batches_done_)});
+        result.image.layers.push_back({name, steering_.errors().standardError(erring, passes_.done(), batches_done_)});
       else
         result.image.layers.push_back({name, developLayer(film_, name, {passes_, batches_done_})});
     }
@@ -436,7 +387,7 @@ class ReferenceRender {
     metadata["samples"] = std::to_string(passes_.meanPasses());
     metadata["photons"] = std::to_string(photons_done_);
     for (const std::string& layer : layersWithError(settings_.layers, settings_.target_error))
-      metadata["estimated_relmse." + layer] = fmt::format("{:.4g}", errors_.relMse(layer).total());
+      metadata["estimated_relmse." + layer] = fmt::format("{:.4g}", steering_.errors().relMse(layer).total());
     for (const ParamSpec& spec : settings_.params.specs())
       metadata["set." + spec.name] = settings_.params.toText(spec.name);
     describeEstimators(estimator_, needs_, metadata);
@@ -461,7 +412,7 @@ class ReferenceRender {
           "size: give them extras.radius or extras.angle");
     if (any_delta && estimator_ == Estimator::kPath && needs_.caustic)
       result.notes.emplace_back("estimator=path finds no caustic of lights without a size");
-    if (!layersWithError(settings_.layers, settings_.target_error).empty() && errors_.batches() < 2)
+    if (!layersWithError(settings_.layers, settings_.target_error).empty() && steering_.errors().batches() < 2)
       result.notes.emplace_back("standard errors are infinite: they take two batches at least; raise the budget");
     if (needs_.specular_caustic_bias && !gather_ && !vcm_)
       result.notes.emplace_back("specular_caustic_bias is black: nothing is gathered under a kernel");
@@ -486,9 +437,7 @@ class ReferenceRender {
   LayerNeeds needs_;
   ReferenceWorld world_;
   Film film_;
-  bool adaptive_;  ///< passes from the eye may go where errors are large
-  bool steered_;   ///< errors decide what is next
-  ErrorEstimate errors_;
+  Steering steering_;
   LayerNeeds path_needs_;  ///< of `path_tracer_`
   PathTracer path_tracer_;
   std::unique_ptr<LightTracer> light_tracer_;
@@ -503,9 +452,7 @@ class ReferenceRender {
   GatheredPhotons gathered_;
   std::uint64_t samples_budget_ = 0, photons_budget_ = 0, samples_done_ = 0, photons_done_ = 0, batches_done_ = 0;
   std::uint64_t path_rays_ = 0, light_rays_ = 0, not_finite_ = 0;
-  ErrorEstimate::OfLayer error_;        ///< at the last closed batches; only where errors steer
-  std::vector<double> pass_variances_;  ///< of that layer, by tile
-  std::uint64_t error_batch_passes_ = 1, samples_at_photons_ = 0;
+  std::uint64_t samples_at_photons_ = 0;
   std::uint32_t batch_photons_ = 0;  ///< asked of a batch
   double path_seconds_ = 0, light_seconds_ = 0;
 };

@@ -1,0 +1,79 @@
+#include "techniques/reference/steering.h"
+
+#include <algorithm>
+
+namespace nephroid {
+namespace {
+
+constexpr std::uint64_t kMostBatchPasses = 4;
+
+/// Those whose errors were asked for, and without a target those that steer: `beauty`, or else all.
+std::vector<std::string> chooseLayers(const Film& film, const RenderSettings& settings, const LayerNeeds& needs,
+                                      bool steers) {
+  std::vector<std::string> layers = layersWithError(settings.layers, settings.target_error);
+  if (settings.target_error > 0.0 || !steers) return layers;
+  for (const std::string& layer : settings.layers) {
+    const bool counts = needs.beauty ? layer == "beauty" : !planesOf(film, layer).empty();
+    if (counts && std::find(layers.begin(), layers.end(), layer) == layers.end()) layers.push_back(layer);
+  }
+  return layers;
+}
+
+}  // namespace
+
+bool isTimedOnly(const RenderSettings& settings) {
+  return settings.seconds > 0 && settings.samples == 0 && settings.photons == 0;
+}
+
+Steering::Steering(const Film& film, const RenderSettings& settings, const LayerNeeds& needs, bool adaptive)
+    : settings_(settings),
+      needs_(needs),
+      adaptive_(adaptive),
+      steers_(settings.target_error > 0.0 || (isTimedOnly(settings) && adaptive)),
+      errors_(film, chooseLayers(film, settings, needs, steers_)) {}
+
+void Steering::chooseBatches(std::uint64_t passes) {
+  batch_passes_ = std::clamp<std::uint64_t>(passes / kBatches, 1, kMostBatchPasses);
+}
+
+void Steering::takePaths(const EyePasses& passes) {
+  if (errors_.empty()) return;
+  errors_.closeFullEyeBatches(passes.done(), batch_passes_);
+  estimate();
+}
+
+void Steering::takePhotons(const EyePasses& passes, std::uint64_t batches, bool gathered) {
+  if (errors_.empty()) return;
+  errors_.closeLightBatch(batches);
+  if (gathered) errors_.closeEyeBatches(passes.done());
+  estimate();
+}
+
+void Steering::takeRest(const EyePasses& passes) {
+  if (!errors_.empty()) errors_.closeEyeBatches(passes.done());
+}
+
+void Steering::estimate() {
+  if (!steers_ || errors_.empty()) return;
+  const bool by_picture = settings_.target_error <= 0.0 && needs_.beauty;
+  error_ = by_picture ? ErrorEstimate::OfLayer{"beauty", errors_.relMse("beauty")} : errors_.worst();
+  if (adaptive_ && errors_.eyeBatches() >= kFirstBatches) pass_variances_ = errors_.variancesOfPass(error_.layer);
+}
+
+bool Steering::reachesTarget() const {
+  return settings_.target_error > 0.0 && isKnown() && error_.error.total() <= settings_.target_error;
+}
+
+bool Steering::photonsPay(std::uint64_t path_rays, std::uint64_t light_rays) const {
+  return error_.error.from_lights * static_cast<double>(path_rays) >=
+         error_.error.from_eye * static_cast<double>(light_rays);
+}
+
+void Steering::planRound(EyePasses& passes) const {
+  if (pass_variances_.empty())
+    passes.planAll();
+  else
+    passes.planWhereItPays(pass_variances_, static_cast<std::uint32_t>(kMostBatchPasses));
+}
+
+}  // namespace nephroid

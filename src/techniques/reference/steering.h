@@ -1,0 +1,78 @@
+// What estimated errors decide in a progressive render: when it is good enough, whether paths or photons are next, and
+// where the paths go.
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "techniques/reference/error_estimate.h"
+#include "techniques/reference/eye_passes.h"
+#include "techniques/reference/film.h"
+#include "techniques/technique.h"
+
+namespace nephroid {
+
+class Steering {
+ public:
+  /// Batches that a budget is cut into where errors are estimated: the relative error of a standard error from B
+  /// batches is 1/√(2(B − 1)), here 18 %.
+  static constexpr std::uint64_t kBatches = 16;
+
+  /// @param film      must outlive it
+  /// @param settings  ditto. A target, or time alone, lets errors steer
+  /// @param adaptive  passes from the eye may go where errors are large
+  Steering(const Film& film, const RenderSettings& settings, const LayerNeeds& needs, bool adaptive);
+
+  /// Nobody asked for errors, and nothing is steered by them.
+  bool empty() const { return errors_.empty(); }
+  /// Errors decide what is next, at the latest once they are known.
+  bool steers() const { return steers_; }
+  const ErrorEstimate& errors() const { return errors_; }
+
+  /// Passes in the first batches from the eye. Points of the sampler are well spread together, so that a mean over them
+  /// errs less than the spread of single ones says: batches of four know of that.
+  /// @param passes  of the whole render
+  void chooseBatches(std::uint64_t passes);
+  std::uint64_t batchPasses() const { return batch_passes_; }
+
+  /// After a round of paths: closes their batches where they are long enough.
+  void takePaths(const EyePasses& passes);
+  /// After a batch of photons. @param gathered  paths gathered the one before: all that did are one batch
+  void takePhotons(const EyePasses& passes, std::uint64_t batches, bool gathered);
+  /// At the end: nothing is left out of the estimate.
+  void takeRest(const EyePasses& passes);
+  /// From what is in closed batches, which a checkpoint may have brought.
+  void estimate();
+
+  /// Of fewer batches, even the mean over a picture is unsure.
+  bool isKnown() const { return errors_.batches() >= kFirstBatches; }
+  /// Of the layer that steers, at the last closed batches.
+  const ErrorEstimate::OfLayer& error() const { return error_; }
+  bool reachesTarget() const;
+  /// Do photons lessen the error more by another ray? A variance falls by its share per pass, and a pass costs rays.
+  /// Rays, not seconds: equal renders must take equal steps.
+  bool photonsPay(std::uint64_t path_rays, std::uint64_t light_rays) const;
+  void planRound(EyePasses& passes) const;
+
+  template <class State>
+  void visitState(State& state) {
+    errors_.visitState(state);
+  }
+
+ private:
+  static constexpr std::uint64_t kFirstBatches = 8;
+
+  const RenderSettings& settings_;
+  const LayerNeeds& needs_;
+  bool adaptive_, steers_;
+  ErrorEstimate errors_;
+  ErrorEstimate::OfLayer error_;
+  std::vector<double> pass_variances_;  ///< of that layer, by tile; empty until they are known
+  std::uint64_t batch_passes_ = 1;
+};
+
+/// Does nothing but time end the render?
+bool isTimedOnly(const RenderSettings& settings);
+
+}  // namespace nephroid
