@@ -253,7 +253,8 @@ Coverage coverageOf(CellOnPicture cell) {
   Coverage k;
   k.origin = floor(cell.lower);
   k.first = max(vec2(0.0), -k.origin);
-  k.end = min(cell.upper, vec2(push.width, push.height)) - k.origin;
+  // A point on a texel's border is in the texel after it.
+  k.end = min(floor(cell.upper) + 1.0, vec2(push.width, push.height)) - k.origin;
   vec2 a = cell.corners[0] - k.origin, b = cell.corners[1] - k.origin, c = cell.corners[2] - k.origin,
        d = cell.corners[3] - k.origin;
   k.ab = makeEdge(a, b);
@@ -288,6 +289,8 @@ vec2 spanInRow(vec2 span, Edge e, float y) {
 vec2 rowOf(Coverage k, float y) {
   vec2 span = spanInRow(spanInRow(vec2(1e30, -1e30), k.ab, y), k.bc, y);
   span = spanInRow(spanInRow(span, k.cd, y), k.da, y);
+  // Of a folded cell both triangles lie on one side of the diagonal, which then bounds it.
+  span = spanInRow(span, k.ca, y);
   if (k.point_share_1 > 0.0 && k.point_1.y == y) span = vec2(min(span.x, k.point_1.x), max(span.y, k.point_1.x));
   if (k.point_share_2 > 0.0 && k.point_2.y == y) span = vec2(min(span.x, k.point_2.x), max(span.y, k.point_2.x));
   return vec2(max(k.first.x, floor(span.x)), min(k.end.x, span.y + 1.0));

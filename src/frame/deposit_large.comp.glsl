@@ -7,21 +7,44 @@
 
 layout(local_size_x = 64) in;
 
-/// A cell on all pictures that show some of it or, if they share surfaces, on the one that its surface faces: each thread
-/// some of its rows.
+/// Where large cells lie thicker than so many layers over the picture, some count by chance for all. They come from
+/// light that curved or bumpy glass scatters, and none of them is seen by itself. Means are kept, and so is the time,
+/// however far light is spread.
+const float kMostLayers = 64.0;
+/// Cells of no more texels always count.
+const float kCertainTexels = 256.0;
+
+/// @param texels  of the cell  @param count  of large cells
+float chanceToCount(float texels, uint count) {
+  float fair = kMostLayers * float(push.width) * float(push.height) / float(count);
+  return min(max(fair, kCertainTexels) / texels, 1.0);
+}
+
+/// In [0, 1), by where a cell lies: another one for each sample, for its photons are elsewhere.
+float chanceOf(vec3 place, uint salt) {
+  uvec3 bits = floatBitsToUint(place);
+  return float(mixBits(mixBits(mixBits(bits.x ^ salt) ^ bits.y) ^ bits.z) >> 8) * (1.0 / 16777216.0);
+}
+
+/// A cell on all pictures that show some of it or, if they share surfaces, on the one that its surface faces: each
+/// thread some of its rows.
 /// @param lane  of `lanes` threads
-void addByRows(vec3 places[4], Light light, uint salt, uint lane, uint lanes) {
+/// @param count  of large cells
+void addByRows(vec3 places[4], Light light, uint salt, uint lane, uint lanes, uint count) {
   uint faced = kViewsShare ? viewFaced(places, light.direction) : kViewCount;
   if (kViewsShare && faced == kViewCount && lane == 0u) addToLost(light, salt);
   for (uint v = kViewsShare ? faced : 0u; v < (kViewsShare ? min(faced + 1u, kViewCount) : kViewCount); ++v) {
     CellOnPicture shown = cellOnPicture(places, v);
     if (!mayBeSeen(shown)) continue;
     Coverage k = coverageOf(shown);
+    float chance = chanceToCount(countTexels(k), count);
+    if (chanceOf(places[0], salt) >= chance) continue;
+    Light all = Light(light.flux / chance, light.direction);
     Span span = spanOf(shown, places, v);
     for (float y = k.first.y + float(lane); y < k.end.y; y += float(lanes)) {
       vec2 row = rowOf(k, y);
       for (float x = row.x; x < row.y; x += 1.0)
-        addShare(k, vec2(x, y), v, span, light, salt);
+        addShare(k, vec2(x, y), v, span, all, salt);
     }
   }
 }
@@ -42,6 +65,6 @@ void main() {
       piece.places = cell.places;
       piece.light = lightOf(cell);
     }
-    addByRows(piece.places, piece.light, 4u * number + (is_whole ? 0u : part), i % kThreadsEach, kThreadsEach);
+    addByRows(piece.places, piece.light, 4u * number + (is_whole ? 0u : part), i % kThreadsEach, kThreadsEach, count);
   }
 }

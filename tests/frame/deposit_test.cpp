@@ -6,6 +6,7 @@
 #include <cstring>
 #include <functional>
 
+#include "core/sampling/sampler.h"
 #include "frame/low_pass.h"
 #include "frame/surface_layers.h"
 #include "frame/view.h"
@@ -255,6 +256,30 @@ TEST_F(DepositTest, LargeSquaresAreDepositedCellByCell) {
   });
   const Deposited squares = deposit(folded, std::span(&view, 1), {.has_squares = true});
   EXPECT_EQ(squares.steps, deposit(folded, std::span(&view, 1)).steps);
+}
+
+TEST_F(DepositTest, FarSpreadLightKeepsItsMean) {
+  // Each photon ends somewhere else, so that cells lie over each other in a hundred layers. Those along the border end
+  // in one place: nothing goes on beyond them.
+  const ViewRecord view = fromAbove();
+  constexpr int kPictures = 12;
+  double sum = 0.0, squares = 0.0;
+  for (std::uint32_t i = 0; i < kPictures; ++i) {
+    Sampler sampler(i, 0, 0);
+    const auto photons = emit([&](double u, double v) {
+      const vec2 place = 3.8F * sampler.next2D() - 1.9F;
+      const bool is_inside = std::max(std::abs(u - 0.5), std::abs(v - 0.5)) < 0.5 - 2.0 / kGrid;
+      return is_inside ? makePhoton(place.x, place.y) : makePhoton(0.0, 0.0);
+    });
+    const Deposited found = deposit(photons, std::span(&view, 1));
+    const double share = (found.total().y + found.lost.y) / (2.0 * kPhotonCount);
+    sum += share / kPictures, squares += share * share / kPictures;
+  }
+  const double deviation = std::sqrt((squares - sum * sum) * kPictures / (kPictures - 1));
+  EXPECT_NEAR(sum, 1.0, 3.0 * deviation / std::sqrt(double{kPictures}));
+  // Some cells count for others, and not too few.
+  EXPECT_GT(deviation, 0.01);
+  EXPECT_LT(deviation, 0.1);
 }
 
 TEST_F(DepositTest, NegativeFluxOfBandsIsSubtracted) {
