@@ -1,5 +1,7 @@
 #include "techniques/reference/estimator.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <array>
 
@@ -9,6 +11,20 @@ namespace nephroid {
 namespace {
 
 constexpr std::array<std::string_view, 5> kNames{"light", "footprint", "photon-map", "path", "vcm"};
+
+/// As its name alone says.
+EstimatorChoice choiceOfOne(Estimator estimator) {
+  const bool alone = estimator == Estimator::kPath || estimator == Estimator::kVcm;
+  return {estimator,
+          alone ? estimator : Estimator::kPhotonMap,
+          estimator == Estimator::kPath ? Estimator::kPath : Estimator::kLight,
+          {}};
+}
+
+std::string formatFigures(const EstimatorFigures& figures) {
+  return fmt::format("{:.3g} by photons, {:.3g} by paths, of which {:.0f} contributed and found {:.0f} % of the light",
+                     figures.photons, figures.paths, figures.contributions, 100.0 * figures.found);
+}
 
 }  // namespace
 
@@ -24,24 +40,33 @@ ParamSpec makeEstimatorParam() {
       "what makes caustics. light: photons, each for the pixel that sees it; footprint: spread over what neighbours "
       "would cover, less and less; photon-map: gathered under kernels that shrink; path: paths from the eye alone, "
       "for checking (needs lights with a size); vcm: photons seen, gathered and connected, and paths, each weighted by "
-      "how well it does (no dispersion); auto: footprint, or light where errors are to be estimated",
+      "how well it does (no dispersion); auto: measures whether paths are better, as under large lights; else "
+      "footprint, "
+      "or light where errors are to be estimated",
       choices};
 }
 
-Estimator chooseEstimator(std::string_view name, bool estimates_errors) {
+EstimatorChoice chooseEstimators(std::string_view name, bool estimates_errors, ReferenceWorld& world,
+                                 const Camera& camera, int width, int height, const LayerNeeds& needs) {
   const auto found = std::find(kNames.begin(), kNames.end(), name);
-  if (found != kNames.end()) return static_cast<Estimator>(found - kNames.begin());
-  return estimates_errors ? Estimator::kLight : Estimator::kFootprint;
+  if (found != kNames.end()) return choiceOfOne(static_cast<Estimator>(found - kNames.begin()));
+  EstimatorChoice choice = choiceOfOne(estimates_errors ? Estimator::kLight : Estimator::kFootprint);
+  choice.figures = measureEstimators(world, camera, width, height, needs);
+  const auto isWon = [](const std::optional<EstimatorFigures>& f) { return f && f->pathsAreBetter(); };
+  if (isWon(choice.figures.caustic)) choice.caustic = Estimator::kPath;
+  if (isWon(choice.figures.specular_caustic)) choice.specular_caustic = Estimator::kPath;
+  return choice;
 }
 
 std::string_view nameOf(Estimator estimator) { return kNames[static_cast<std::size_t>(estimator)]; }
 
 std::vector<std::string> estimatorNames() { return {kNames.begin(), kNames.end()}; }
 
-PhotonPaths photonPathsOf(Estimator estimator) {
-  if (estimator == Estimator::kPath) return {};
-  const bool gathers = estimator != Estimator::kVcm;
-  return {.caustic = true, .indirect = true, .specular_caustic = true, .specular_indirect = gathers};
+PhotonPaths photonPathsOf(const EstimatorChoice& choice) {
+  return {.caustic = choice.caustic != Estimator::kPath,
+          .indirect = choice.indirect != Estimator::kPath,
+          .specular_caustic = choice.specular_caustic != Estimator::kPath,
+          .specular_indirect = choice.specular_caustic == Estimator::kPhotonMap};
 }
 
 void FootprintSpread::apply(const ReferenceWorld& world, LightTracer& tracer, PhotonBatch& batch) {
@@ -51,11 +76,26 @@ void FootprintSpread::apply(const ReferenceWorld& world, LightTracer& tracer, Ph
   batch.spreadOver(view.get(), overlaps);
 }
 
-void describeEstimators(Estimator estimator, const LayerNeeds& needs, std::map<std::string, std::string>& metadata) {
-  if (needs.caustic || needs.irradiance_caustic) metadata["estimator.caustic"] = nameOf(estimator);
-  if (needs.throughSpecular())
-    metadata["estimator.specular_caustic"] =
-        nameOf(estimator == Estimator::kPath || estimator == Estimator::kVcm ? estimator : Estimator::kPhotonMap);
+void describeEstimators(const EstimatorChoice& choice, const LayerNeeds& needs,
+                        std::map<std::string, std::string>& metadata) {
+  if (needs.caustic || needs.irradiance_caustic) metadata["estimator.caustic"] = nameOf(choice.caustic);
+  if (needs.throughSpecular()) metadata["estimator.specular_caustic"] = nameOf(choice.specular_caustic);
+  const PilotFigures& figures = choice.figures;
+  if (figures.caustic) metadata["estimator.caustic.measured"] = formatFigures(*figures.caustic);
+  if (figures.specular_caustic)
+    metadata["estimator.specular_caustic.measured"] = formatFigures(*figures.specular_caustic);
+}
+
+std::vector<std::string> explainEstimators(const EstimatorChoice& choice) {
+  std::vector<std::string> sentences;
+  const auto explain = [&](std::string_view layer, Estimator chosen, const std::optional<EstimatorFigures>& figures) {
+    if (figures)
+      sentences.push_back(
+          fmt::format("{} by {}: relMSE at equal cost is {}", layer, nameOf(chosen), formatFigures(*figures)));
+  };
+  explain("caustic", choice.caustic, choice.figures.caustic);
+  explain("specular_caustic", choice.specular_caustic, choice.figures.specular_caustic);
+  return sentences;
 }
 
 }  // namespace nephroid

@@ -5,7 +5,8 @@
 //   photon-map  photons gathered by paths from the eye under a kernel that shrinks (progressive photon mapping)
 //   path        paths from the eye alone: shares nothing with the others; needs lights with a size
 //   vcm         all of these by their weights: vertex connection and merging (see vcm/vcm.h)
-//   auto        footprint; light where errors are to be estimated, for a footprint's blur is in no standard error
+//   auto        path where a pilot shows that it is better, for each kind of caustic; else footprint, or light where
+//               errors are to be estimated, for a footprint's blur is in no standard error
 //
 // Caustics in mirrors and through glass can be met by paths from the eye alone, so they are gathered by all but `path`
 // and `vcm`.
@@ -18,6 +19,7 @@
 #include <vector>
 
 #include "core/params.h"
+#include "techniques/reference/estimator_pilot.h"
 #include "techniques/reference/film.h"
 #include "techniques/reference/photon_batch.h"
 #include "techniques/reference/receiver_view.h"
@@ -27,16 +29,26 @@ namespace nephroid {
 enum class Estimator : std::uint8_t { kLight, kFootprint, kPhotonMap, kPath, kVcm };
 
 ParamSpec makeEstimatorParam();
-/// The one that a value of the parameter stands for.
-/// @param name              as checked by the parameter
+/// What makes the paths whose light begins with S.
+struct EstimatorChoice {
+  Estimator caustic;           ///< L S⁺ D E
+  Estimator specular_caustic;  ///< L S⁺ D S⁺ E, and L S … D … D S⁺ E, which it lights in turn
+  Estimator indirect;          ///< L S … D … D E: kLight or kPath
+  PilotFigures figures;        ///< by which it was chosen, if it was measured
+};
+
+/// What a value of the parameter stands for in a scene.
+/// @param name              as checked by the parameter; `auto` measures where there is something to choose
 /// @param estimates_errors  whether standard errors are wanted
-Estimator chooseEstimator(std::string_view name, bool estimates_errors);
+/// @param world             seen by `camera`, `width` × `height` pixels; others meanwhile (see measureEstimators)
+EstimatorChoice chooseEstimators(std::string_view name, bool estimates_errors, ReferenceWorld& world,
+                                 const Camera& camera, int width, int height, const LayerNeeds& needs);
 std::string_view nameOf(Estimator estimator);
 /// Every value of the parameter but `auto`.
 std::vector<std::string> estimatorNames();
 
 /// The paths that are left to photons, not to chance.
-PhotonPaths photonPathsOf(Estimator estimator);
+PhotonPaths photonPathsOf(const EstimatorChoice& choice);
 
 /// What spreads photons over footprints: the view that they are spread over, and how far for each light.
 struct FootprintSpread {
@@ -47,7 +59,11 @@ struct FootprintSpread {
   void apply(const ReferenceWorld& world, LightTracer& tracer, PhotonBatch& batch);
 };
 
-/// Says in the metadata what makes each kind of caustic that was asked for: "estimator.caustic", …
-void describeEstimators(Estimator estimator, const LayerNeeds& needs, std::map<std::string, std::string>& metadata);
+/// Says in the metadata what makes each kind of caustic that was asked for, "estimator.caustic", …, and what was
+/// measured, "estimator.caustic.measured", ….
+void describeEstimators(const EstimatorChoice& choice, const LayerNeeds& needs,
+                        std::map<std::string, std::string>& metadata);
+/// The same for people: a sentence for each kind that was measured.
+std::vector<std::string> explainEstimators(const EstimatorChoice& choice);
 
 }  // namespace nephroid

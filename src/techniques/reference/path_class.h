@@ -44,6 +44,10 @@ class PathClass {
 
   int count() const { return count_; }
   bool firstIsDiffuse() const { return count_ > 0 && !first_specular_; }
+  /// With more S alone it becomes L S⁺ D E, or is that already.
+  bool mayBecomeCaustic() const { return firstIsDiffuse() && later_all_specular_; }
+  /// With more events it becomes L S⁺ D S⁺ E, or is that already.
+  bool mayBecomeSpecularCaustic() const { return first_specular_ && stage_ != Stage::kOther; }
   PathLayer layer() const {
     if (count_ == 0) return PathLayer::kEmission;
     if (first_specular_) return PathLayer::kSpecular;

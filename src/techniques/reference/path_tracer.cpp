@@ -138,10 +138,11 @@ class EyePath {
   /// Can a path that begins with these events still end in a layer that was asked for?
   bool mayContribute(const PathClass& c) const {
     if (c.count() == 0) return true;
-    if (!c.firstIsDiffuse()) return needs_.throughSpecular();
+    if (!c.firstIsDiffuse()) return needs_.specular || (needs_.throughSpecular() && c.mayBecomeSpecularCaustic());
     // Light that is met by chance counts in part for what was sampled towards lights, so it has to be looked for.
     if (c.count() == 1 && needs_.direct) return true;
-    return needs_.beyondDiffuse() || (!left_.caustic && (needs_.caustic || needs_.irradiance_caustic));
+    const bool caustic = !left_.caustic && (needs_.caustic || needs_.irradiance_caustic);
+    return needs_.beyondDiffuse() || (caustic && c.mayBecomeCaustic());
   }
   bool isWanted(const PathClass& c) const {
     if (left_.include(c)) return false;

@@ -34,11 +34,6 @@ constexpr std::uint64_t kDefaultPhotons = 2'000'000;
 using Clock = std::chrono::steady_clock;
 double secondsSince(Clock::time_point start) { return std::chrono::duration<double>(Clock::now() - start).count(); }
 
-Estimator estimatorOf(const RenderSettings& settings) {
-  return chooseEstimator(settings.params.getString("estimator"),
-                         !layersWithError(settings.layers, settings.target_error).empty());
-}
-
 /// One progressive render.
 class ReferenceRender {
  public:
@@ -49,26 +44,31 @@ class ReferenceRender {
         progress_(progress),
         stop_(stop),
         camera_(camera),
-        estimator_(estimatorOf(settings)),
         needs_(settings.layers),
         world_(scene, camera, settings.width, settings.height, makeOptions(settings)),
         film_(settings.width, settings.height, needs_),
-        steering_(film_, settings, needs_, settings.params.getBool("adaptive") && estimator_ != Estimator::kVcm),
-        path_needs_(estimator_ == Estimator::kVcm ? needs_.withoutCaustics() : needs_),
+        steering_(film_, settings, needs_,
+                  settings.params.getBool("adaptive") && settings.params.getString("estimator") != "vcm"),
+        choice_(chooseEstimators(settings.params.getString("estimator"),
+                                 !layersWithError(settings.layers, settings.target_error).empty(), world_, camera,
+                                 settings.width, settings.height, needs_)),
+        path_needs_(choice_.caustic == Estimator::kVcm ? needs_.withoutCaustics() : needs_),
         path_tracer_(world_, path_needs_),
         passes_(settings.width, settings.height) {
-    const bool from_lights = estimator_ != Estimator::kPath, connects_and_merges = estimator_ == Estimator::kVcm;
+    const bool connects_and_merges = choice_.caustic == Estimator::kVcm;
     if (connects_and_merges) checkVcm(scene, !steering_.empty());
-    const bool gather_direct = estimator_ == Estimator::kPhotonMap && (needs_.caustic || needs_.irradiance_caustic);
-    const bool photons_reach_eye = from_lights && (gather_direct || needs_.throughSpecular());
+    PhotonPaths from_photons = photonPathsOf(choice_);
+    const bool gather_direct =
+        choice_.caustic == Estimator::kPhotonMap && (needs_.caustic || needs_.irradiance_caustic);
+    const bool photons_reach_eye = gather_direct || (from_photons.specular_caustic && needs_.throughSpecular());
     const bool gather = photons_reach_eye && !connects_and_merges;
-    if ((from_lights && needs_.lightTraced()) || photons_reach_eye)
-      light_tracer_ = std::make_unique<LightTracer>(
-          world_, PhotonPaths{.caustic = !gather_direct && (needs_.caustic || needs_.anyIrradiance()),
-                              .indirect = needs_.indirect || needs_.irradiance});
+    const PhotonPaths connect{
+        .caustic = from_photons.caustic && !gather_direct && (needs_.caustic || needs_.anyIrradiance()),
+        .indirect = from_photons.indirect && (needs_.indirect || needs_.irradiance)};
+    if (connect.caustic || connect.indirect || photons_reach_eye)
+      light_tracer_ = std::make_unique<LightTracer>(world_, connect);
     if (light_tracer_ && light_tracer_->emitters().empty()) light_tracer_.reset();
     gather_ = gather && light_tracer_;
-    PhotonPaths from_photons = photonPathsOf(estimator_);
     if (gather && !gather_) from_photons.specular_caustic = from_photons.specular_indirect = false;
     path_tracer_.leaveToPhotons(from_photons);
     if (gather_) {
@@ -125,7 +125,7 @@ class ReferenceRender {
     constexpr std::uint64_t kUnlimited = std::uint64_t{1} << 62;
     samples_budget_ = settings_.samples ? settings_.samples : open_ended ? kUnlimited : kDefaultSamples;
     photons_budget_ = settings_.photons ? settings_.photons : open_ended ? kUnlimited : kDefaultPhotons;
-    const bool caustics_from_eye = estimator_ != Estimator::kLight && estimator_ != Estimator::kFootprint;
+    const bool caustics_from_eye = choice_.caustic != Estimator::kLight && choice_.caustic != Estimator::kFootprint;
     if (!needs_.eyeTraced(caustics_from_eye)) samples_budget_ = 0;
     if (!light_tracer_) photons_budget_ = 0;
     if (vcm_) {
@@ -150,7 +150,7 @@ class ReferenceRender {
   void makePhotonBatch(std::uint32_t photons) {
     batch_photons_ = photons;
     photon_batch_ = std::make_unique<PhotonBatch>(*light_tracer_, photons, settings_.width, settings_.height);
-    if (estimator_ == Estimator::kFootprint && needs_.lightTraced())
+    if (choice_.caustic == Estimator::kFootprint && needs_.lightTraced())
       footprints_.apply(world_, *light_tracer_, *photon_batch_);
     if (vcm_) vcm_->begin(*photon_batch_, settings_.width, settings_.height);
   }
@@ -390,7 +390,7 @@ class ReferenceRender {
       metadata["estimated_relmse." + layer] = fmt::format("{:.4g}", steering_.errors().relMse(layer).total());
     for (const ParamSpec& spec : settings_.params.specs())
       metadata["set." + spec.name] = settings_.params.toText(spec.name);
-    describeEstimators(estimator_, needs_, metadata);
+    describeEstimators(choice_, needs_, metadata);
     addNotes(result);
   }
 
@@ -402,15 +402,16 @@ class ReferenceRender {
       result.notes.push_back(
           fmt::format("caustics of '{}': each photon spread over its footprint, overlap {:g} N^(1/3)",
                       light_tracer_->emitters()[e]->name(), footprints_.overlaps[e]));
+    for (std::string& sentence : explainEstimators(choice_)) result.notes.push_back(std::move(sentence));
     if (any_delta && vcm_ && needs_.specular)
       result.notes.emplace_back(
           "light of sources without a size that returns through mirrors or glass after two or more diffuse bounces is "
           "missing: estimator=vcm does not gather it");
-    if (any_delta && estimator_ == Estimator::kPath && needs_.throughSpecular())
+    if (any_delta && choice_.specular_caustic == Estimator::kPath && needs_.throughSpecular())
       result.notes.emplace_back(
           "caustics in mirrors and through glass, and what they light in turn, are missing under lights without a "
           "size: give them extras.radius or extras.angle");
-    if (any_delta && estimator_ == Estimator::kPath && needs_.caustic)
+    if (any_delta && choice_.caustic == Estimator::kPath && needs_.caustic)
       result.notes.emplace_back("estimator=path finds no caustic of lights without a size");
     if (!layersWithError(settings_.layers, settings_.target_error).empty() && steering_.errors().batches() < 2)
       result.notes.emplace_back("standard errors are infinite: they take two batches at least; raise the budget");
@@ -433,11 +434,11 @@ class ReferenceRender {
   ProgressSink* progress_;
   const StopToken* stop_;
   Camera camera_;
-  Estimator estimator_;
   LayerNeeds needs_;
   ReferenceWorld world_;
   Film film_;
   Steering steering_;
+  EstimatorChoice choice_;
   LayerNeeds path_needs_;  ///< of `path_tracer_`
   PathTracer path_tracer_;
   std::unique_ptr<LightTracer> light_tracer_;

@@ -177,6 +177,7 @@ TEST(KernelBias, IsWhatTheKernelTakesFromAPeak) {
   RenderSettings photons = makeSettings(8, 32, 16 * 1024, {"specular_caustic", "specular_caustic_bias"});
   // Batches as where errors are estimated.
   photons.layers.emplace_back("specular_caustic_error");
+  photons.params.set("estimator", "photon-map");
   constexpr int kRenders = 128;
   double bias = 0.0, estimated = 0.0, squares = 0.0;
   for (int seed = 0; seed < kRenders; ++seed) {

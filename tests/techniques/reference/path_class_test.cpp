@@ -18,6 +18,14 @@ PathClass classOf(std::string_view from_eye) {
   return c;
 }
 
+/// Every string of up to six events.
+std::vector<std::string> allStrings() {
+  std::vector<std::string> strings{""};
+  for (std::size_t i = 0; strings[i].size() < 6; ++i)
+    for (const char event : {'S', 'D'}) strings.push_back(strings[i] + event);
+  return strings;
+}
+
 TEST(PathClass, PartitionsPathsAsTheLayersAreDefined) {
   EXPECT_EQ(classOf("").layer(), PathLayer::kEmission);
   EXPECT_EQ(classOf("D").layer(), PathLayer::kDirect);
@@ -42,19 +50,28 @@ TEST(PathClass, LightTracingTakesWhatBeginsSpecularAndEndsDiffuse) {
   for (const char* no : {"", "D", "S", "DD", "SDS", "DSD"}) EXPECT_FALSE(classOf(no).isLightTraced()) << no;
 }
 
+TEST(PathClass, KnowsWhatMayStillBecomeACaustic) {
+  const std::vector<std::string> strings = allStrings();
+  for (const std::string& events : strings) {
+    const auto begins = [&](const std::string& whole) { return whole.starts_with(events); };
+    const bool caustic = std::any_of(strings.begin(), strings.end(), [&](const std::string& whole) {
+      return begins(whole) && classOf(whole).layer() == PathLayer::kCaustic;
+    });
+    const bool specular_caustic = std::any_of(strings.begin(), strings.end(), [&](const std::string& whole) {
+      return begins(whole) && classOf(whole).isSpecularCaustic();
+    });
+    // The longest strings have no room for what would follow.
+    if (events.empty() || events.size() > 4) continue;
+    EXPECT_EQ(classOf(events).mayBecomeCaustic(), caustic) << events;
+    EXPECT_EQ(classOf(events).mayBecomeSpecularCaustic(), specular_caustic) << events;
+  }
+}
+
 TEST(PathClass, SpecularIndirectBeginsAndEndsSpecularWithTwoDiffuseOrMore) {
   for (const char* yes : {"SDDS", "SSDDS", "SDSDS", "SDDDS", "SDDSS", "SDSDSS"})
     EXPECT_TRUE(classOf(yes).isSpecularIndirect()) << yes;
   for (const char* no : {"", "S", "SS", "SD", "SDS", "SDD", "SDSD", "DDS", "DSDS"})
     EXPECT_FALSE(classOf(no).isSpecularIndirect()) << no;
-}
-
-/// Every string of up to six events.
-std::vector<std::string> allStrings() {
-  std::vector<std::string> strings{""};
-  for (std::size_t i = 0; strings[i].size() < 6; ++i)
-    for (const char event : {'S', 'D'}) strings.push_back(strings[i] + event);
-  return strings;
 }
 
 TEST(PhotonPaths, TogetherAreAllThatBeginSpecularAtTheLightAndMeetADiffuseSurface) {

@@ -100,6 +100,7 @@ TEST(Reference, CausticsThroughGlassAgreeBetweenPhotonsAndPaths) {
   addObject(scene, makeBox("slab", dvec3(-3, 0.5, -3), dvec3(3, 0.8, 3)), makeGlass(1.5F));
   addObject(scene, makeRectangle("lamp", dvec3(0, 4, 0), dvec3(2.5, 0, 0), dvec3(0, 0, 2.5)), makeLamp(vec3(5.0F)));
   RenderSettings photons = makeSettings(16, 64, 1 << 20, {"specular_caustic"});
+  photons.params.set("estimator", "photon-map");
   RenderSettings paths = makeSettings(16, 2048, 0, {"specular_caustic"});
   paths.params.set("estimator", "path");
   const Camera camera = makeCamera("through", vec3(0.3F, 2.5F, 0.2F), vec3(0, 0, 0), radians(30));
@@ -126,7 +127,8 @@ SceneData makeLidScene() {
 TEST(Reference, WhatCausticsLightSeenThroughGlassAgreesBetweenPhotonsAndPaths) {
   const SceneData scene = makeLidScene();
   const std::vector<std::string> layers{"specular", "specular_caustic"};
-  const RenderSettings photons = makeSettings(16, 64, 1 << 18, layers);
+  RenderSettings photons = makeSettings(16, 64, 1 << 18, layers);
+  photons.params.set("estimator", "photon-map");
   RenderSettings paths = makeSettings(16, 512, 0, layers);
   paths.params.set("estimator", "path");
   // Kernels lose what lies beyond the edges of the floor; the blocks along the walls show it most.
@@ -136,15 +138,12 @@ TEST(Reference, WhatCausticsLightSeenThroughGlassAgreesBetweenPhotonsAndPaths) {
 TEST(Reference, WhatCausticsLightSeenThroughGlassIsTheSameWithAndWithoutIndirect) {
   // Where `indirect` is asked for every photon goes on after its first diffuse surface, else an eighth of them.
   const SceneData scene = makeLidScene();
-  const double alone =
-      test::meanOf(renderReference(scene, test::lookAtCaustic(), makeSettings(16, 64, 1 << 20, {"specular"}))
-                       .image.layers[0]
-                       .image)
-          .x;
-  const double along = test::meanOf(*renderReference(scene, test::lookAtCaustic(),
-                                                     makeSettings(16, 64, 1 << 20, {"specular", "indirect"}))
-                                         .image.find("specular"))
-                           .x;
+  const auto meanOfSpecular = [&](std::vector<std::string> layers) {
+    RenderSettings settings = makeSettings(16, 64, 1 << 20, std::move(layers));
+    settings.params.set("estimator", "photon-map");
+    return test::meanOf(*renderReference(scene, test::lookAtCaustic(), settings).image.find("specular")).x;
+  };
+  const double alone = meanOfSpecular({"specular"}), along = meanOfSpecular({"specular", "indirect"});
   EXPECT_NEAR(alone / along, 1.0, 0.01);
 }
 
@@ -153,8 +152,9 @@ TEST(Reference, SunWithASizeAgreesBetweenEstimators) {
   scene.lights.push_back(test::makeSun(vec3(-0.4F, -1, -0.2F), vec3(3.0F), 60.0F));
   RenderSettings from_eye = makeSettings(16, 256, 0, {"caustic"});
   from_eye.params.set("estimator", "path");
-  expectAgreement(blockMeans(scene, makeSettings(16, 1, 1 << 14, {"caustic"}), "caustic"),
-                  blockMeans(scene, from_eye, "caustic"));
+  RenderSettings from_lights = makeSettings(16, 1, 1 << 14, {"caustic"});
+  from_lights.params.set("estimator", "footprint");
+  expectAgreement(blockMeans(scene, from_lights, "caustic"), blockMeans(scene, from_eye, "caustic"));
 }
 
 TEST(Reference, EnvironmentAgreesBetweenEstimators) {
@@ -164,8 +164,9 @@ TEST(Reference, EnvironmentAgreesBetweenEstimators) {
   scene.environment = Environment{image, 20.0F, 1.0F, "test"};
   RenderSettings from_eye = makeSettings(16, 256, 0, {"caustic"});
   from_eye.params.set("estimator", "path");
-  expectAgreement(blockMeans(scene, makeSettings(16, 1, 1 << 15, {"caustic"}), "caustic"),
-                  blockMeans(scene, from_eye, "caustic"));
+  RenderSettings from_lights = makeSettings(16, 1, 1 << 15, {"caustic"});
+  from_lights.params.set("estimator", "footprint");
+  expectAgreement(blockMeans(scene, from_lights, "caustic"), blockMeans(scene, from_eye, "caustic"));
 }
 
 TEST(Reference, LayersSumToBeauty) {

@@ -1,0 +1,135 @@
+// What `estimator=auto` picks, and that what it picks makes the same picture.
+#include "techniques/reference/estimator_pilot.h"
+
+#include <gtest/gtest.h>
+
+#include <memory>
+
+#include "scene/load.h"
+#include "support/tiny_scenes.h"
+
+namespace nephroid {
+namespace {
+
+using test::addObject;
+using test::makeDiffuse;
+using test::makeGlass;
+using test::makeSettings;
+
+const Camera kAbove = makeCamera("above", vec3(2.0F, 4.5F, 3.0F), vec3(0, 0.5F, 0), radians(40));
+
+/// A slab of glass over a floor between two walls.
+SceneData makeLid() {
+  SceneData scene;
+  addObject(scene, test::makeFloor(5.0), makeDiffuse(vec3(0.8F)));
+  addObject(scene, makeRectangle("left", dvec3(-1.5, 0.75, 0), dvec3(0, 0.75, 0), dvec3(0, 0, 2.5)),
+            makeDiffuse(vec3(0.8F)));
+  addObject(scene, makeRectangle("back", dvec3(0, 0.75, -1.5), dvec3(0, 0, 2.5), dvec3(0, 0.75, 0)),
+            makeDiffuse(vec3(0.8F)));
+  addObject(scene, makeBox("slab", dvec3(-2.5, 1.5, -2.5), dvec3(2.5, 1.8, 2.5)), makeGlass(1.5F));
+  return scene;
+}
+
+SceneData underEvenSky(SceneData scene) {
+  auto image = std::make_shared<Image>(8, 4, 3, 1.0F);
+  scene.environment = Environment{image, 0.0F, 1.0F, "even"};
+  return scene;
+}
+
+SceneData underLight(SceneData scene, Light light) {
+  scene.lights.push_back(std::move(light));
+  return scene;
+}
+
+/// Under an even sky light goes every way through the glass, and a path that leaves it meets the sky at once.
+SceneData makeGlassUnderSky() { return loadScene("builtin:cognac?light=env"); }
+
+PilotFigures measureThrough(const SceneData& scene, const Camera& camera) {
+  ReferenceWorld world(scene, camera, 64, 48, ReferenceOptions{});
+  return measureEstimators(world, camera, 64, 48, LayerNeeds({"caustic", "specular"}));
+}
+
+PilotFigures measure(const SceneData& scene) {
+  ReferenceWorld world(scene, kAbove, 64, 64, ReferenceOptions{});
+  return measureEstimators(world, kAbove, 64, 64, LayerNeeds({"caustic", "specular"}));
+}
+
+TEST(EstimatorFigures, PathsWinOnlyBeyondDoubt) {
+  const EstimatorFigures sure{.photons = 0.1, .paths = 0.04, .contributions = 1000, .found = 1.0};
+  EXPECT_TRUE(sure.pathsAreBetter());
+  EstimatorFigures doubtful = sure;
+  doubtful.paths = 0.06;
+  EXPECT_FALSE(doubtful.pathsAreBetter()) << "hardly better";
+  doubtful = sure, doubtful.contributions = 10;
+  EXPECT_FALSE(doubtful.pathsAreBetter()) << "few have met the light";
+  doubtful = sure, doubtful.found = 0.5;
+  EXPECT_FALSE(doubtful.pathsAreBetter()) << "half of the light is missing";
+  EXPECT_FALSE((EstimatorFigures{.photons = 0.1, .paths = 0.0}.pathsAreBetter())) << "no noise, for there is nothing";
+}
+
+TEST(EstimatorPilot, PrefersPathsForWhatIsSeenInAGlassUnderASky) {
+  const SceneData scene = makeGlassUnderSky();
+  const PilotFigures figures = measureThrough(scene, scene.cameras[0]);
+  ASSERT_TRUE(figures.specular_caustic);
+  EXPECT_TRUE(figures.specular_caustic->pathsAreBetter())
+      << figures.specular_caustic->photons << ' ' << figures.specular_caustic->paths << ' '
+      << figures.specular_caustic->contributions << ' ' << figures.specular_caustic->found;
+}
+
+TEST(EstimatorPilot, LeavesSmallLightsToPhotonsAtOnce) {
+  for (const float radius : {0.0F, 0.02F}) {
+    const PilotFigures figures = measure(underLight(makeLid(), test::makePoint(vec3(0.5F, 4, 0.5F), vec3(9), radius)));
+    EXPECT_FALSE(figures.caustic) << radius;
+    EXPECT_FALSE(figures.specular_caustic) << radius;
+  }
+}
+
+TEST(EstimatorPilot, LeavesALightWithoutSizeToPhotonsAlsoUnderASky) {
+  const SceneData scene = underEvenSky(underLight(makeLid(), test::makePoint(vec3(0.5F, 4, 0.5F), vec3(9))));
+  EXPECT_FALSE(measure(scene).specular_caustic);
+}
+
+TEST(EstimatorPilot, PutsCameraAndSeedBack) {
+  const SceneData scene = underEvenSky(makeLid());
+  ReferenceWorld world(scene, kAbove, 64, 48, ReferenceOptions{.seed = 77});
+  measureEstimators(world, kAbove, 64, 48, LayerNeeds({"specular"}));
+  EXPECT_EQ(world.options.seed, 77U);
+  EXPECT_EQ(world.camera_model.width(), 64);
+  EXPECT_EQ(world.camera_model.height(), 48);
+}
+
+RenderResult render(const char* estimator, std::uint64_t samples, int threads = 0, std::uint64_t seed = 1) {
+  RenderSettings settings = makeSettings(24, samples, samples << 10, {"caustic", "specular", "indirect", "irradiance"});
+  settings.width = 32;
+  settings.params.set("estimator", estimator);
+  settings.threads = threads;
+  settings.seed = seed;
+  const SceneData scene = makeGlassUnderSky();
+  return test::renderReference(scene, scene.cameras[0], settings);
+}
+
+TEST(EstimatorChoice, DoesNotDependOnThreadsOrSeed) {
+  const auto one = render("auto", 1, 1).image.metadata, three = render("auto", 1, 3).image.metadata,
+             other = render("auto", 1, 1, 2).image.metadata;
+  for (const char* key : {"estimator.caustic", "estimator.specular_caustic", "estimator.specular_caustic.measured"}) {
+    EXPECT_EQ(one.at(key), three.at(key));
+    EXPECT_EQ(one.at(key), other.at(key));
+  }
+}
+
+// Paths for what is seen through glass, photons for the rest: each path is still counted once.
+TEST(EstimatorChoice, OfBothKindsMakesThePictureOfOneAlone) {
+  const RenderResult mixed = render("auto", 256), pure = render("footprint", 256);
+  ASSERT_EQ(mixed.image.metadata.at("estimator.caustic"), "footprint");
+  ASSERT_EQ(mixed.image.metadata.at("estimator.specular_caustic"), "path");
+  ASSERT_EQ(pure.image.metadata.at("estimator.specular_caustic"), "photon-map");
+  EXPECT_EQ(pure.image.metadata.count("estimator.specular_caustic.measured"), 0U);
+  for (const Layer& layer : pure.image.layers) {
+    const double expected = test::meanOf(layer.image).x;
+    EXPECT_GT(expected, 0.0);
+    EXPECT_NEAR(test::meanOf(*mixed.image.find(layer.name)).x, expected, 0.02 * expected) << layer.name;
+  }
+}
+
+}  // namespace
+}  // namespace nephroid
