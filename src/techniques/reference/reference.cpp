@@ -21,6 +21,7 @@
 #include "techniques/reference/error_estimate.h"
 #include "techniques/reference/estimator.h"
 #include "techniques/reference/geometry_layers.h"
+#include "techniques/reference/guide_pilot.h"
 #include "techniques/reference/path_tracer.h"
 #include "techniques/reference/photon_batch.h"
 #include "techniques/reference/vcm/vcm.h"
@@ -161,8 +162,13 @@ class ReferenceRender {
   void makePhotonBatch(std::uint32_t photons) {
     batch_photons_ = photons;
     photon_batch_ = std::make_unique<PhotonBatch>(*light_tracer_, photons, settings_.width, settings_.height);
+    // A render that goes on comes here twice: what measures and teaches is emitted evenly each time.
+    emitEvenly(*light_tracer_);
     if (estimator_ == Estimator::kFootprint && needs_.lightTraced())
       footprints_.apply(world_, *light_tracer_, *photon_batch_);
+    if (paysToGuide(estimator_, needs_))
+      guided_ = guideEmission(world_, *light_tracer_,
+                              {photon_batch_->shares(), footprints_.overlaps, settings_.params.getFloat("guiding")});
     if (vcm_) vcm_->begin(*photon_batch_, settings_.width, settings_.height);
   }
 
@@ -461,6 +467,9 @@ class ReferenceRender {
       result.notes.push_back(
           fmt::format("caustics of '{}': each photon spread over its footprint, overlap {:g} N^(1/3)",
                       light_tracer_->emitters()[e]->name(), footprints_.overlaps[e]));
+    for (const GuidedLight& light : guided_)
+      result.notes.push_back(fmt::format("photons of '{}' guided: {:.0f} % of them reach the picture, {:.0f} % if even",
+                                         light.name, 100.0 * light.seen_guided, 100.0 * light.seen_even));
     if (any_delta && needs_.throughSpecular())
       result.notes.emplace_back(gather_ || vcm_ || !light_tracer_
                                     ? "light of sources without a size that returns through mirrors or glass after two "
@@ -499,6 +508,7 @@ class ReferenceRender {
   PathTracer path_tracer_;
   std::unique_ptr<LightTracer> light_tracer_;
   FootprintSpread footprints_;
+  std::vector<GuidedLight> guided_;
   std::unique_ptr<PhotonBatch> photon_batch_;
   std::unique_ptr<Vcm> vcm_;
   std::vector<Ledger> ledgers_;
@@ -540,6 +550,7 @@ Technique makeReferenceTechnique() {
       makeSpecularAlphaParam(),
       {"max-bounces", 64, 1, 1024, "", "scattering events on a path before it is given up", {}},
       makeEstimatorParam(),
+      makeGuidingParam(),
       {"bands", 0, 0, 64, "", "wavelength bands of dispersive light; 0: continuous", {}},
   };
   technique.render = renderReference;
