@@ -97,7 +97,8 @@ class SunEmitter final : public Emitter {
 
   EmittedPhoton emit(Sampler& sampler, vec3& normal_out) const override {
     normal_out = vec3(0.0F);
-    const vec2 uv = mask_.sample(sampler.next2D());
+    float density = 1.0F;
+    const vec2 uv = mask_.sample(drawPlace(sampler, density));
     vec3 dir = frame_.z;
     if (sin_half_angle_ > 0.0F) {
       // Uniform in projected solid angle: a disc of uniform radiance gives every photon the same flux.
@@ -109,16 +110,18 @@ class SunEmitter final : public Emitter {
     EmittedPhoton photon;
     photon.dir = dir;
     photon.origin = on_plane - dir * distanceToLeave(on_plane, -dir);
-    photon.flux = expected_flux_;
+    photon.flux = expected_flux_ / density;
     return photon;
   }
-  float arrivalDensity(const LightRay&) const override {
+  float arrivalDensity(const LightRay& ray) const override {
     const double directions = kPi * sin_half_angle_ * sin_half_angle_;
-    return static_cast<float>(1.0 / (sin_half_angle_ > 0.0F ? area_ * directions : area_));
+    return densityAlong(ray.arrival, ray.dir) *
+           static_cast<float>(1.0 / (sin_half_angle_ > 0.0F ? area_ * directions : area_));
   }
   EmissionExtent extentOf(const EmittedPhoton&) const override {
     return {static_cast<float>(std::sqrt(area_)), std::sqrt(kPi) * sin_half_angle_};
   }
+  bool canBeGuided() const override { return true; }
 
  private:
   /// Marks the cells of the box [low, high] of the plane whose centres pass `inside`.
@@ -132,6 +135,12 @@ class SunEmitter final : public Emitter {
         if (!mask_.isMarked(x, y) &&
             inside(lower_ + cell * vec2(static_cast<float>(x) + 0.5F, static_cast<float>(y) + 0.5F)))
           mask_.mark(x, y);
+  }
+  float densityAlong(vec3 position, vec3 dir) const {
+    if (!guide_) return 1.0F;
+    const vec3 local = frame_.toLocal(position - origin_), along = frame_.toLocal(dir);
+    const vec2 on_plane = vec2(local) - vec2(along) * (local.z / along.z);
+    return densityAt(mask_.invert((on_plane - lower_) / extent_));
   }
   float cellReach() const { return 0.5F * length(extent_) / static_cast<float>(kMaskSize); }
 
@@ -195,7 +204,8 @@ class PointEmitter final : public Emitter {
   EmittedPhoton emit(Sampler& sampler, vec3& normal_out) const override {
     normal_out = vec3(0.0F);
     EmittedPhoton photon;
-    photon.dir = frame_.toWorld(capFromSquare(mask_.sample(sampler.next2D()), one_minus_cos_));
+    float density = 1.0F;
+    photon.dir = frame_.toWorld(capFromSquare(mask_.sample(drawPlace(sampler, density)), one_minus_cos_));
     photon.origin = light_.position;
     if (light_.radius > 0.0F) {
       // A sphere of uniform radiance shows every direction the same disc: a place on the disc, moved to the surface.
@@ -203,18 +213,22 @@ class PointEmitter final : public Emitter {
       const float rise = std::sqrt(std::max(light_.radius * light_.radius - dot(disc, disc), 0.0F));
       photon.origin += Frame::fromZ(photon.dir).toWorld(vec3(disc, rise));
     }
-    photon.flux = intensityAlong(light_, photon.dir) * static_cast<float>(solid_angle_);
+    photon.flux = intensityAlong(light_, photon.dir) * static_cast<float>(solid_angle_ / density);
     return photon;
   }
   float arrivalDensity(const LightRay& ray) const override {
     const float area = light_.radius > 0.0F ? kPi * light_.radius * light_.radius : ray.distance * ray.distance;
-    return 1.0F / static_cast<float>(solid_angle_ * area);
+    return densityTowards(ray.dir) / static_cast<float>(solid_angle_ * area);
   }
   EmissionExtent extentOf(const EmittedPhoton&) const override {
     return {std::sqrt(kPi) * light_.radius, static_cast<float>(std::sqrt(solid_angle_))};
   }
+  bool canBeGuided() const override { return true; }
 
  private:
+  float densityTowards(vec3 dir) const {
+    return guide_ ? densityAt(mask_.invert(squareFromCap(frame_.toLocal(dir), one_minus_cos_))) : 1.0F;
+  }
   void markTargets(const EmissionTargets& targets) {
     const float cell_angle = std::sqrt(2.0F * kPi * one_minus_cos_) / static_cast<float>(kMaskSize);
     // Parts need not be much smaller than the light that looks at them.

@@ -13,11 +13,13 @@
 #include <cstdint>
 #include <memory>
 #include <mutex>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "core/math.h"
 #include "core/sampling/sampler.h"
+#include "trace/emission_guide.h"
 #include "trace/interior.h"
 #include "trace/light_set.h"
 #include "trace/trace_scene.h"
@@ -33,7 +35,8 @@ struct EmittedPhoton {
 };
 
 /// The emission domain about a photon: how far its neighbours would be if it were alone. Squared place × squared
-/// direction is the volume of phase space over which a light spreads one photon.
+/// direction is the volume of phase space over which a light spreads one photon. Of a guided light it is as if photons
+/// were even: cells that follow the guide would meet at its steps with unequal widths, and that is a bias.
 struct EmissionExtent {
   float place = 0.0F;      ///< √area perpendicular to the ray, m; 0 for a light without a size
   float direction = 0.0F;  ///< √solid angle; 0 for a sun without a size
@@ -99,13 +102,28 @@ class Emitter {
   /// Media that the light itself is inside of.
   const InteriorList& interior() const { return interior_; }
 
+  /// Suns, points and spots can be guided: their place or direction is drawn from a square, by the first two numbers
+  /// that `emit` takes from its sampler. Without a guide they are the place in it.
+  virtual bool canBeGuided() const { return false; }
+  /// From now on photons are emitted by this density over that square, or evenly without one; their flux and
+  /// `arrivalDensity` are by it. @pre canBeGuided()
+  void guideBy(std::optional<EmissionGuide> guide) { guide_ = std::move(guide); }
+
  protected:
+  /// @param density  becomes that of the place in the square, 1 on average
+  vec2 drawPlace(Sampler& sampler, float& density) const {
+    const vec2 u = sampler.next2D();
+    density = 1.0F;
+    return guide_ ? guide_->warp(u, density) : u;
+  }
+  float densityAt(vec2 place) const { return guide_ ? guide_->densityAt(place) : 1.0F; }
   friend std::vector<std::unique_ptr<Emitter>> makeEmitters(const TraceScene&, const MaterialTable&, const LightSet&,
                                                             const EmissionTargets&);
   std::string name_;
   std::uint32_t source_ = kNone;
   vec3 expected_flux_{0.0F};
   InteriorList interior_;
+  std::optional<EmissionGuide> guide_;
 };
 
 /// One emitter per light that can reach a target; none if there is no target.

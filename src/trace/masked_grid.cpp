@@ -76,6 +76,14 @@ vec3 capFromSquare(vec2 uv, float one_minus_cos) {
   return {disc.x * stretch, disc.y * stretch, 1.0F - r2 * one_minus_cos};
 }
 
+vec2 squareFromCap(vec3 dir, float one_minus_cos) {
+  // 1 − z = (x² + y²) / (1 + z), which keeps its digits near the axis.
+  const float sine2 = dir.x * dir.x + dir.y * dir.y;
+  const float rise = dir.z > 0.0F ? sine2 / (1.0F + dir.z) : 1.0F - dir.z;
+  const float sine = std::sqrt(sine2), r = std::min(std::sqrt(rise / one_minus_cos), 1.0F);
+  return invertConcentricDisc(sine > 0.0F ? vec2(dir.x, dir.y) * (r / sine) : vec2(r, 0.0F));
+}
+
 void CapMerger::add(const DirectionCap& cap) {
   std::uint64_t place = 0;
   for (int k = 0; k < 3; ++k)  // of [−1, 1] no more than 2²⁰ steps are told apart

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <algorithm>
+#include <cmath>
 #include <cstdint>
 #include <unordered_map>
 #include <vector>
@@ -58,6 +59,28 @@ class MaskedGrid {
     return {static_cast<float>((columnOf(row, begin + cell) + (in_row - cell)) / width_),
             static_cast<float>((row + (along - begin) / count) / height_)};
   }
+  /// The numbers of which `sample` makes a point; of a point that is not marked, those of a marked one near by in its
+  /// row, or of the next row that has any. @pre markedCount() > 0
+  vec2 invert(vec2 point) const {
+    const auto cellOf = [](double x, int count) { return std::clamp(static_cast<int>(std::floor(x)), 0, count - 1); };
+    const double x = static_cast<double>(point.x) * width_, y = static_cast<double>(point.y) * height_;
+    const auto row = static_cast<std::uint32_t>(cellOf(y, height_));
+    const std::uint32_t begin = row_begin_[row], count = row_begin_[row + 1] - begin;
+    const auto all = static_cast<double>(row_begin_.back());
+    if (count == 0) return {0.5F, static_cast<float>(std::min(begin / all, 1.0))};
+    const auto column = static_cast<std::uint32_t>(cellOf(x, width_));
+    const auto first = runs_.begin() + row_runs_[row], end = runs_.begin() + row_runs_[row + 1];
+    const auto isBefore = [](std::uint32_t c, const Run& run) { return c < run.column; };
+    const auto next = std::upper_bound(first, end, column, isBefore);
+    double in_row = 0.0;
+    if (next != first) {
+      const std::uint32_t run_end = next == end ? begin + count : next->first;
+      const Run& run = *(next - 1);
+      in_row = std::min<double>(run.first - begin + (x - run.column), run_end - begin);
+    }
+    return {static_cast<float>(in_row / count),
+            static_cast<float>((begin + std::clamp(y - row, 0.0, 1.0) * count) / all)};
+  }
 
  private:
   /// Entries of the guide: so many that the row is mostly the guessed one or the next.
@@ -103,6 +126,8 @@ class MaskedGrid {
 /// Equal-area map of the square [0, 1]² onto the spherical cap about +z: concentric disc, then lifted.
 /// @param one_minus_cos  1 − cos of the cap's half-angle, in (0, 2]; 2 is the whole sphere
 vec3 capFromSquare(vec2 uv, float one_minus_cos);
+/// Its inverse, up to rounding. @param dir  unit
+vec2 squareFromCap(vec3 dir, float one_minus_cos);
 
 /// A cone of directions.
 struct DirectionCap {

@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <utility>
+
 #include "core/sampling/warp.h"
 #include "support/tiny_scenes.h"
 
@@ -84,6 +86,69 @@ TEST(EmissionExtent, TimesRadianceIsFlux) {
     const float radiance = sun ? sunRadiance(aim.data.lights[0]).x : 5.0F / (kPi * 0.09F);
     EXPECT_NEAR(extent.place * extent.place * extent.direction * extent.direction * radiance, photon.flux.x,
                 1e-4F * photon.flux.x);
+  }
+}
+
+/// Four times as many photons on one side of the square as on the other.
+EmissionGuide makeLopsidedGuide() {
+  std::vector<float> weights;
+  for (int y = 0; y < EmissionGuide::kSide; ++y)
+    for (int x = 0; x < EmissionGuide::kSide; ++x) weights.push_back(2 * x < EmissionGuide::kSide ? 1.6F : 0.4F);
+  return EmissionGuide(weights, 1e-6F);
+}
+
+/// A sun, then a point, with the given size.
+SceneData makeLitBall(bool sun, bool wide) {
+  SceneData data = makeBall();
+  data.lights.push_back(sun ? test::makeSun(vec3(1, -2, 0.3F), vec3(10.0F), wide ? 0.5F : 0.0F)
+                            : test::makePoint(vec3(1, 2, 6), vec3(5.0F), wide ? 0.1F : 0.0F));
+  return data;
+}
+
+/// Flux, and its first moment over where photons start and whereto, per flux.
+std::pair<double, dvec3> sumFlux(const Emitter& emitter) {
+  constexpr std::uint32_t kCount = 1 << 16;
+  double flux = 0.0;
+  dvec3 moment(0.0);
+  for (std::uint32_t i = 0; i < kCount; ++i) {
+    Sampler sampler(1, 1, i);
+    const EmittedPhoton photon = emitter.emit(sampler);
+    flux += static_cast<double>(photon.flux.x) / kCount;
+    moment += dvec3(photon.origin + photon.dir) * static_cast<double>(photon.flux.x) / static_cast<double>(kCount);
+  }
+  return {flux, moment / flux};
+}
+
+TEST(GuidedEmission, KeepsFluxAndWhereItGoes) {
+  for (const bool sun : {false, true}) {
+    const Aim aim(makeLitBall(sun, true));
+    const auto [even_flux, even_moment] = sumFlux(*aim.emitters[0]);
+    aim.emitters[0]->guideBy(makeLopsidedGuide());
+    const auto [flux, moment] = sumFlux(*aim.emitters[0]);
+    EXPECT_NEAR(flux, even_flux, 0.001 * even_flux) << sun;
+    // Undivided, it would move by some hundredths: a fifth of the half-width of what is lit.
+    EXPECT_LT(glm::length(moment - even_moment), 0.002) << sun;
+  }
+}
+
+TEST(GuidedEmission, ArrivalDensityTimesFluxIsRadiance) {
+  for (const bool sun : {false, true}) {
+    const Aim aim(makeLitBall(sun, true));
+    Emitter& emitter = *aim.emitters[0];
+    emitter.guideBy(makeLopsidedGuide());
+    const float radiance = sun ? sunRadiance(aim.data.lights[0]).x : 5.0F / (kPi * 0.01F);
+    int wrong = 0, dense = 0;
+    for (std::uint32_t i = 0; i < 1000; ++i) {
+      Sampler sampler(1, 1, i);
+      const EmittedPhoton photon = emitter.emit(sampler);
+      const LightRay ray{photon.origin + 3.0F * photon.dir, photon.dir, 3.0F};
+      // A photon at the very step of the density may be taken for its neighbour.
+      const float ratio = emitter.arrivalDensity(ray) * photon.flux.x / radiance;
+      if (std::abs(ratio - 1.0F) > 0.01F) ++wrong;
+      if (photon.flux.x < emitter.expectedFlux().x) ++dense;
+    }
+    EXPECT_LE(wrong, 5) << sun;
+    EXPECT_NEAR(dense, 800, 20) << sun;
   }
 }
 

@@ -37,6 +37,32 @@ TEST(MaskedGrid, UpperEndOfTheSquareStaysInside) {
   EXPECT_LE(p.y, 1.0F);
 }
 
+TEST(MaskedGrid, InvertUndoesSample) {
+  MaskedGrid grid(16, 16);
+  for (int y = 2; y < 15; ++y)
+    for (int x = 0; x < 16; ++x)
+      if ((x * 7 + y * 5) % 3 != 0 && y != 9) grid.mark(x, y);
+  grid.finish();
+  for (int j = 0; j < 50; ++j)
+    for (int i = 0; i < 50; ++i) {
+      const vec2 u((static_cast<float>(i) + 0.4F) / 50.0F, (static_cast<float>(j) + 0.3F) / 50.0F);
+      const vec2 back = grid.invert(grid.sample(u));
+      ASSERT_NEAR(back.x, u.x, 1e-5F) << i << ' ' << j;
+      ASSERT_NEAR(back.y, u.y, 1e-5F) << i << ' ' << j;
+    }
+}
+
+TEST(SquareFromCap, UndoesCapFromSquare) {
+  for (const float h : {2.0F, 1.0F, 1e-3F, 1e-7F})
+    for (int j = 0; j < 40; ++j)
+      for (int i = 0; i < 40; ++i) {
+        const vec2 u((static_cast<float>(i) + 0.4F) / 40.0F, (static_cast<float>(j) + 0.3F) / 40.0F);
+        const vec2 back = squareFromCap(capFromSquare(u, h), h);
+        ASSERT_NEAR(back.x, u.x, 2e-4F) << h << ' ' << i << ' ' << j;
+        ASSERT_NEAR(back.y, u.y, 2e-4F) << h << ' ' << i << ' ' << j;
+      }
+}
+
 TEST(CapFromSquare, IsUnitAndFillsTheCapEvenly) {
   // The mean of z over a cap of height h is 1 − h/2 (Archimedes).
   for (const float h : {2.0F, 1.0F, 1e-3F, 1e-7F}) {

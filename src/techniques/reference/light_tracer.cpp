@@ -131,8 +131,8 @@ void LightTracer::trace(std::size_t emitter, const PhotonWave& wave, std::uint32
   connections.flush();
 }
 
-std::optional<FootprintSplat> LightTracer::findLanding(std::size_t emitter, const PhotonWave::Photon& photon,
-                                                       const FootprintScale& spread) const {
+PhotonTally LightTracer::traceAlone(std::size_t emitter, const PhotonWave::Photon& photon,
+                                    const FootprintScale& spread) const {
   PhotonTally tally;
   CameraConnections connections(world_.walker, nullptr, tally);
   const LightPathContext context{.world = world_,
@@ -151,6 +151,12 @@ std::optional<FootprintSplat> LightTracer::findLanding(std::size_t emitter, cons
     path.arrive(hit);
   }
   connections.flush();
+  return tally;
+}
+
+std::optional<FootprintSplat> LightTracer::findLanding(std::size_t emitter, const PhotonWave::Photon& photon,
+                                                       const FootprintScale& spread) const {
+  const PhotonTally tally = traceAlone(emitter, photon, spread);
   if (tally.footprints.empty()) return std::nullopt;
   return tally.footprints.front();
 }

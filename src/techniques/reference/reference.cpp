@@ -18,6 +18,7 @@
 #include "techniques/reference/checkpoint.h"
 #include "techniques/reference/estimator.h"
 #include "techniques/reference/geometry_layers.h"
+#include "techniques/reference/guide_pilot.h"
 #include "techniques/reference/path_tracer.h"
 #include "techniques/reference/photon_batch.h"
 #include "techniques/reference/steering.h"
@@ -150,8 +151,13 @@ class ReferenceRender {
   void makePhotonBatch(std::uint32_t photons) {
     batch_photons_ = photons;
     photon_batch_ = std::make_unique<PhotonBatch>(*light_tracer_, photons, settings_.width, settings_.height);
+    // A render that goes on comes here twice: what measures and teaches is emitted evenly each time.
+    emitEvenly(*light_tracer_);
     if (choice_.caustic == Estimator::kFootprint && needs_.lightTraced())
       footprints_.apply(world_, *light_tracer_, *photon_batch_);
+    if (paysToGuide(choice_.caustic, needs_))
+      guided_ = guideEmission(world_, *light_tracer_,
+                              {photon_batch_->shares(), footprints_.overlaps, settings_.params.getFloat("guiding")});
     if (vcm_) vcm_->begin(*photon_batch_, settings_.width, settings_.height);
   }
 
@@ -402,6 +408,9 @@ class ReferenceRender {
       result.notes.push_back(
           fmt::format("caustics of '{}': each photon spread over its footprint, overlap {:g} N^(1/3)",
                       light_tracer_->emitters()[e]->name(), footprints_.overlaps[e]));
+    for (const GuidedLight& light : guided_)
+      result.notes.push_back(fmt::format("photons of '{}' guided: {:.0f} % of them reach the picture, {:.0f} % if even",
+                                         light.name, 100.0 * light.seen_guided, 100.0 * light.seen_even));
     for (std::string& sentence : explainEstimators(choice_)) result.notes.push_back(std::move(sentence));
     if (any_delta && vcm_ && needs_.specular)
       result.notes.emplace_back(
@@ -443,6 +452,7 @@ class ReferenceRender {
   PathTracer path_tracer_;
   std::unique_ptr<LightTracer> light_tracer_;
   FootprintSpread footprints_;
+  std::vector<GuidedLight> guided_;
   std::unique_ptr<PhotonBatch> photon_batch_;
   std::unique_ptr<Vcm> vcm_;
   std::vector<Ledger> ledgers_;
@@ -490,6 +500,7 @@ Technique makeReferenceTechnique() {
        "where --target-error or --seconds alone end the render: more paths where the picture is noisiest, after some "
        "everywhere; false: as many everywhere",
        {}},
+      makeGuidingParam(),
       {"bands", 0, 0, 64, "", "wavelength bands of dispersive light; 0: continuous", {}},
   };
   technique.render = renderReference;
