@@ -8,7 +8,7 @@
 namespace nephroid {
 namespace {
 
-constexpr std::array<std::string_view, 5> kNames{"light", "footprint", "photon-map", "path", "vcm"};
+constexpr std::array<std::string_view, 6> kNames{"light", "footprint", "photon-map", "path", "manifold", "vcm"};
 
 }  // namespace
 
@@ -23,7 +23,8 @@ ParamSpec makeEstimatorParam() {
       "",
       "what makes caustics. light: photons, each for the pixel that sees it; footprint: spread over what neighbours "
       "would cover, less and less; photon-map: gathered under kernels that shrink; path: paths from the eye alone, "
-      "for checking (needs lights with a size); vcm: photons seen, gathered and connected, and paths, each weighted by "
+      "for checking (needs lights with a size); manifold: walks from what is seen over one or two smooth interfaces to "
+      "the lights, photons for all other ways; vcm: photons seen, gathered and connected, and paths, each weighted by "
       "how well it does (no dispersion); auto: footprint, or light where errors are to be estimated",
       choices};
 }
@@ -48,8 +49,8 @@ void FootprintSpread::apply(const ReferenceWorld& world, LightTracer& tracer, Ph
 void describeEstimators(Estimator estimator, const LayerNeeds& needs, std::map<std::string, std::string>& metadata) {
   if (needs.caustic || needs.irradiance_caustic) metadata["estimator.caustic"] = nameOf(estimator);
   if (needs.throughSpecular())
-    metadata["estimator.specular_caustic"] =
-        nameOf(estimator == Estimator::kPath || estimator == Estimator::kVcm ? estimator : Estimator::kPhotonMap);
+    metadata["estimator.specular_caustic"] = nameOf(
+        estimator == Estimator::kLight || estimator == Estimator::kFootprint ? Estimator::kPhotonMap : estimator);
 }
 
 }  // namespace nephroid

@@ -45,7 +45,8 @@ LightPath::LightPath(const LightPathContext& context, const Emitter& emitter, co
       state_{Ray{photon.origin, photon.dir}, emitter.interior()},
       flux_(photon.flux),
       emitted_(photon.flux),
-      footprint_(context.spread.cell > 0.0F ? emitter.extentOf(photon) : EmissionExtent{}, photon.dir) {
+      footprint_(context.spread.cell > 0.0F ? emitter.extentOf(photon) : EmissionExtent{}, photon.dir),
+      share_(emitter.source() == context.world.lights.sourceOfEnvironment()) {
   if (context.spread.cell <= 0.0F) footprint_.lose();
   depart();
 }
@@ -131,9 +132,9 @@ bool LightPath::scatter() {
   } else {
     if (stage_ == Stage::kSpecularChain) {
       ledger_->deposited += dvec3(rest);
-      deposit(weighted, wo);
+      if (!isLeft()) deposit(weighted, wo);
     }
-    if (context_->connect_caustics || stage_ != Stage::kSpecularChain) connectToCamera(bsdf, wo);
+    if (!isLeft() && (context_->connect_caustics || stage_ != Stage::kSpecularChain)) connectToCamera(bsdf, wo);
   }
   return continueWith(bsdf, specular_share, wo);
 }
@@ -192,6 +193,7 @@ bool LightPath::scatterSpecular(const Bsdf& bsdf, vec3 carried, float p_class) {
   }
   flux_ = unweighted;
   if (!s->pass && stage_ == Stage::kEmitted) stage_ = Stage::kSpecularChain;
+  if (!s->pass) share_.add(encounter_, -state_.ray.dir, s->dir, context_->world.options.specular_alpha);
   if (trail_.carried() && accounted()) trail_.scatter(surface(), -state_.ray.dir, *s, p_class);
   bendFootprint(*s, p_class);
   return leave(*s);

@@ -117,7 +117,8 @@ void LightTracer::trace(std::size_t emitter, const PhotonWave& wave, std::uint32
   CameraConnections connections(world_.walker, view_, tally);
   const LightPathContext context{world_,         is_target_,        continue_after_diffuse_,
                                  keep_deposits_, connect_caustics_, view_ ? spread : FootprintScale{},
-                                 tally,          connections,       vcm_};
+                                 tally,          connections,       vcm_,
+                                 leave_walked_};
   const std::function<vec3(std::uint64_t)> normal_of = [&](std::uint64_t p) { return lightNormalOf(emitter, p); };
   GroupTracer group(context, *emitters_[emitter], normal_of);
   for (std::size_t i = begin; i < end; i += kGroupPhotons)

@@ -27,6 +27,8 @@ class LightTracer {
   LightTracer(const ReferenceWorld& world, bool continue_after_diffuse, bool keep_deposits = false);
   /// From now on caustics (L S⁺ D E) are left to those who gather deposits; what they light in turn is not.
   void leaveCausticsToGathering() { connect_caustics_ = false; }
+  /// From now on caustics that a manifold walk finds (see manifold/share.h) are left to it, seen directly or not.
+  void leaveWalkedCaustics() { leave_walked_ = true; }
   /// From now on photons carry weights of vertex connection and merging, and leave their vertices in the tally.
   /// @param techniques  must outlive all that is traced
   void carryWeights(const VcmTechniques* techniques) { vcm_ = techniques; }
@@ -60,7 +62,7 @@ class LightTracer {
   vec3 lightNormalOf(std::size_t emitter, std::uint64_t photon) const;
 
   const ReferenceWorld& world_;
-  bool continue_after_diffuse_, keep_deposits_, connect_caustics_ = true;
+  bool continue_after_diffuse_, keep_deposits_, connect_caustics_ = true, leave_walked_ = false;
   const ReceiverView* view_ = nullptr;
   const VcmTechniques* vcm_ = nullptr;
   std::vector<bool> is_target_;

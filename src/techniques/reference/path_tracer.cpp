@@ -11,6 +11,9 @@ namespace {
 /// Events before Russian roulette begins: glass objects need a handful to be seen through.
 constexpr int kRouletteStart = 6;
 
+/// Walks on the specular manifold draw their numbers from a seed of their own: how many they take is left to chance.
+constexpr std::uint32_t kWalkSeedOffset = 0x6D6E6565U;
+
 float powerHeuristic(float pdf, float other) {
   if (!std::isfinite(pdf)) return 1.0F;
   const float a = pdf * pdf, b = other * other;
@@ -21,16 +24,19 @@ float powerHeuristic(float pdf, float other) {
 class EyePath {
  public:
   EyePath(const ReferenceWorld& world, const LayerNeeds& needs, const PhotonGrid* caustics, bool gather_direct,
-          bool leave_caustics, Film& film, PathCounters& counters, std::size_t pixel, Sampler sampler)
+          bool leave_caustics, const Manifold* manifold, Film& film, PathCounters& counters, std::size_t pixel,
+          Sampler sampler, Sampler walk_sampler)
       : world_(world),
         needs_(needs),
         caustics_(caustics),
         gather_direct_(gather_direct),
         leave_caustics_(leave_caustics),
+        manifold_(manifold),
         film_(film),
         counters_(counters),
         pixel_(pixel),
-        sampler_(sampler) {}
+        sampler_(sampler),
+        walk_sampler_(walk_sampler) {}
 
   void trace(vec2 film_position) {
     state_.ray = world_.camera_model.rayThrough(film_position);
@@ -79,6 +85,7 @@ class EyePath {
       if (bsdf.isEvaluable(c) && isWanted(class_.with(c))) connectToLight(bsdf, c);
     const bool gathers = class_.isEyeSpecular() || (gather_direct_ && class_.count() == 0);
     if (caustics_ && gathers && bsdf.hasDiffuse()) gatherCaustic(bsdf);
+    if (manifold_ && bsdf.hasDiffuse() && wantsWalk()) walkToLight(bsdf);
     return sampleNext(bsdf);
   }
 
@@ -108,6 +115,21 @@ class EyePath {
     // whole says more than its half.
     const vec3 bias = 2.0F * state_.hero.weight * throughput_ * inverse_area * (radiance - 2.0F * inner);
     if (isFinite(bias)) film_.specular_caustic_bias.add(pixel_, bias);
+  }
+
+  bool wantsWalk() const {
+    if (class_.isEyeSpecular()) return needs_.throughSpecular();
+    return class_.count() == 0 && (needs_.caustic || needs_.irradiance || needs_.irradiance_caustic);
+  }
+  void walkToLight(const Bsdf& bsdf) {
+    const auto light = manifold_->estimate(encounter_, state_.interior, -state_.ray.dir, walk_sampler_, counters_.rays);
+    if (!light) return;
+    const vec3 incident = light->irradiance * bsdf.shadingCosineRatio(light->wi);
+    const vec3 radiance = incident * bsdf.evaluate(EventClass::kDiffuse, light->wi, Transport::kRadiance).f;
+    const vec3 normal = encounter_.point.normal_geometric;
+    const bool seen_side = dot(light->wi, normal) * dot(state_.ray.dir, normal) < 0.0F;
+    add(class_.with(EventClass::kDiffuse).with(EventClass::kSpecular), throughput_ * radiance,
+        class_.count() == 0 && seen_side ? incident : vec3(0.0F), true);
   }
 
   /// Can a path that begins with these events still end in a layer that was asked for?
@@ -197,8 +219,9 @@ class EyePath {
     return true;
   }
 
-  void add(const PathClass& path, vec3 radiance, vec3 irradiance, bool gathered = false) {
-    if (!gathered) {
+  /// @param caustic_made_here  of a caustic that is not looked for by chance
+  void add(const PathClass& path, vec3 radiance, vec3 irradiance, bool caustic_made_here = false) {
+    if (!caustic_made_here) {
       if (world_.options.light_tracing && path.isLightTraced()) return;
       if (leave_caustics_ && path.isSpecularCaustic()) return;
     }
@@ -238,10 +261,11 @@ class EyePath {
   const PhotonGrid* caustics_;
   bool gather_direct_;
   bool leave_caustics_;  ///< L S⁺ D S⁺ E is gathered here, or made elsewhere
+  const Manifold* manifold_;
   Film& film_;
   PathCounters& counters_;
   std::size_t pixel_;
-  Sampler sampler_;
+  Sampler sampler_, walk_sampler_;
   PathState state_;
   Encounter encounter_;
   PathClass class_;
@@ -259,7 +283,9 @@ void PathTracer::tracePath(int x, int y, std::uint32_t sample, Film& film, PathC
   const auto pixel = static_cast<std::size_t>(y) * film.width + x;
   Sampler sampler(world_.options.seed, static_cast<std::uint32_t>(pixel), sample);
   const vec2 jitter = sampler.next2D();
-  EyePath path(world_, needs_, caustics_, gather_direct_, leave_caustics_, film, counters, pixel, sampler);
+  const Sampler walk_sampler(world_.options.seed + kWalkSeedOffset, static_cast<std::uint32_t>(pixel), sample);
+  EyePath path(world_, needs_, caustics_, gather_direct_, leave_caustics_, manifold_, film, counters, pixel, sampler,
+               walk_sampler);
   path.trace(vec2(static_cast<float>(x), static_cast<float>(y)) + jitter);
 }
 

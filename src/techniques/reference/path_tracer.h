@@ -11,6 +11,7 @@
 #include <cstdint>
 
 #include "techniques/reference/film.h"
+#include "techniques/reference/manifold/manifold.h"
 #include "techniques/reference/world.h"
 #include "trace/photon_grid.h"
 
@@ -34,6 +35,8 @@ class PathTracer {
   }
   /// From now on L S⁺ D S⁺ E is left to others.
   void leaveCaustics() { leave_caustics_ = true; }
+  /// From now on caustics over one or two interfaces, seen directly or not, are found by this, which must outlive it.
+  void walkFrom(const Manifold* manifold) { manifold_ = manifold; }
   /// One path through pixel (x, y), added to the film. Safe from any thread as long as no two share a pixel.
   void tracePath(int x, int y, std::uint32_t sample, Film& film, PathCounters& counters) const;
 
@@ -41,6 +44,7 @@ class PathTracer {
   const ReferenceWorld& world_;
   const LayerNeeds& needs_;
   const PhotonGrid* caustics_ = nullptr;
+  const Manifold* manifold_ = nullptr;
   bool gather_direct_ = false, leave_caustics_ = false;
 };
 

@@ -85,6 +85,7 @@ class ReferenceRender {
     gather_ = gather && light_tracer_;
     if (gather_) path_tracer_.gatherFrom(&caustics_, gather_direct);
     if (light_tracer_ && gather_direct) light_tracer_->leaveCausticsToGathering();
+    if (estimator_ == Estimator::kManifold && light_tracer_) walkToLights();
     if (connects_and_merges) path_tracer_.leaveCaustics();
     if (connects_and_merges && light_tracer_) vcm_ = std::make_unique<Vcm>(world_, *light_tracer_, needs_);
     if (light_tracer_) shareLedgers();
@@ -128,6 +129,12 @@ class ReferenceRender {
     if (const int bands = settings.params.getInt("bands"); bands > 0) options.spectral.bands = makeBands(bands);
     options.seed = foldSeed(settings.seed);
     return options;
+  }
+
+  void walkToLights() {
+    manifold_ = std::make_unique<Manifold>(world_, light_tracer_->targets(), light_tracer_->emitters());
+    path_tracer_.walkFrom(manifold_.get());
+    light_tracer_->leaveWalkedCaustics();
   }
 
   void chooseBudgets() {
@@ -498,6 +505,7 @@ class ReferenceRender {
   LayerNeeds path_needs_;  ///< of `path_tracer_`
   PathTracer path_tracer_;
   std::unique_ptr<LightTracer> light_tracer_;
+  std::unique_ptr<Manifold> manifold_;
   FootprintSpread footprints_;
   std::unique_ptr<PhotonBatch> photon_batch_;
   std::unique_ptr<Vcm> vcm_;
