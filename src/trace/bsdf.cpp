@@ -19,8 +19,7 @@ Bsdf::Bsdf(const SurfaceMaterial& material, const SurfacePoint& point, vec3 wo, 
     : material_(material), wo_(wo), normal_geometric_(point.normal_geometric), ior_from_(ior_from) {
   side_is_outward_ = dot(wo, point.normal_geometric) > 0.0F;
   const vec3 normal = side_is_outward_ ? point.normal_shading : -point.normal_shading;
-  // Near a silhouette the interpolated normal may look away from the path: the true one cannot.
-  const bool usable = dot(normal, wo) > 1e-4F;
+  const bool usable = dot(normal, wo) > kLeastShadingCosine;
   normal_ = usable ? normal : (side_is_outward_ ? point.normal_geometric : -point.normal_geometric);
   ior_to_ = material.is_solid ? ior_to : material.source->ior;
   smooth_ = material.alpha == 0.0F;

@@ -19,6 +19,10 @@ namespace nephroid {
 
 enum class EventClass : std::uint8_t { kSpecular, kDiffuse };
 
+/// Near a silhouette the shading normal may look away from a path, whose true normal cannot: below this cosine the true
+/// one is taken.
+inline constexpr float kLeastShadingCosine = 1e-4F;
+
 /// What a path carries decides how refraction scales it: radiance changes by the squared ratio of indices, flux does
 /// not.
 enum class Transport : std::uint8_t { kRadiance, kFlux };

@@ -9,10 +9,6 @@
 namespace nephroid {
 namespace {
 
-bool isDispersive(const Interface& boundary) {
-  return (boundary.from && boundary.from->dispersion > 0.0F) || (boundary.to && boundary.to->dispersion > 0.0F);
-}
-
 Band rotate(float u, int steps) {
   const float turned = u + static_cast<float>(steps) / HeroWavelengths::kCount;
   return sampleWavelength(turned < 1.0F ? turned : turned - 1.0F);

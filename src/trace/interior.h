@@ -73,6 +73,11 @@ struct Interface {
   bool is_event = true;  ///< false: hidden inside a solid that rules; the path goes straight on
 };
 
+/// Does each wavelength go its own way there?
+inline bool isDispersive(const Interface& boundary) {
+  return (boundary.from && boundary.from->dispersion > 0.0F) || (boundary.to && boundary.to->dispersion > 0.0F);
+}
+
 /// @param entering  the path meets the outer side of the solid's surface
 inline Interface findInterface(const InteriorList& interior, std::uint32_t solid, const Material& material,
                                bool entering) {

@@ -170,6 +170,82 @@ std::optional<LightSample> LightSet::sampleMesh(const MeshLight& light, vec3 pos
   return s;
 }
 
+std::optional<LightPlace> LightSet::samplePlace(float u_choice, vec2 u) const {
+  if (entries_.empty()) return std::nullopt;
+  const Entry& entry = entries_[choice_->sample(u_choice).index];
+  if (entry.kind == Kind::kEnvironment) return std::nullopt;
+  const bool punctual = entry.kind == Kind::kPunctual;
+  LightPlace place = punctual ? samplePunctualPlace(scene_.scene().lights[entry.index], u)
+                              : sampleMeshPlace(mesh_lights_[entry.index], u);
+  place.source = punctual ? entry.index : sourceOfMesh(entry.index);
+  place.pdf *= entry.probability;
+  return place;
+}
+
+LightPlace LightSet::samplePunctualPlace(const Light& light, vec2 u) const {
+  LightPlace place;
+  place.pdf = 1.0F;
+  if (light.kind == LightKind::kSun) {
+    place.at_infinity = true;
+    place.position = -light.direction;
+    if (light.angle_deg == 0.0F) return place;
+    const auto one_minus_cos = static_cast<float>(sunOneMinusCos(light));
+    place.position = Frame::fromZ(-light.direction).toWorld(sampleUniformCone(u, one_minus_cos));
+    place.pdf = 1.0F / (2.0F * kPi * one_minus_cos);
+    return place;
+  }
+  place.position = light.position;
+  if (light.radius == 0.0F) return place;
+  place.normal = sampleUniformSphere(u);
+  place.position += light.radius * place.normal;
+  place.pdf = 1.0F / (4.0F * kPi * light.radius * light.radius);
+  return place;
+}
+
+LightPlace LightSet::sampleMeshPlace(const MeshLight& light, vec2 u) const {
+  LightPlace place;
+  const auto choice = light.triangles.sample(u.x);
+  place.triangle = static_cast<std::uint32_t>(choice.index);
+  const vec3 weights = sampleUniformTriangle(vec2(std::min(choice.offset, kOneMinusEpsilon), u.y));
+  place.u = weights.y, place.v = weights.z;
+  vec3 p[3];
+  scene_.triangleCorners(light.instance, place.triangle, p);
+  place.position = p[0] + weights.y * (p[1] - p[0]) + weights.z * (p[2] - p[0]);
+  place.normal = normalize(cross(p[1] - p[0], p[2] - p[0]));
+  place.pdf = static_cast<float>(1.0 / light.area);
+  return place;
+}
+
+vec3 LightSet::emissionOf(const LightPlace& place, vec3 dir) const {
+  const float cos_theta = dot(place.normal, dir);
+  if (place.source >= probability_of_punctual_.size()) {
+    SurfacePoint point{};
+    point.instance = mesh_lights_[place.source - probability_of_punctual_.size()].instance;
+    point.triangle = place.triangle, point.u = place.u, point.v = place.v;
+    return materials_.emission(point, cos_theta > 0.0F) * (std::abs(cos_theta) / place.pdf);
+  }
+  const Light& light = scene_.scene().lights[place.source];
+  if (light.kind == LightKind::kSun)
+    return (light.angle_deg > 0.0F ? sunRadiance(light) : irradianceFromSun(light.intensity, 1.0F)) / place.pdf;
+  const vec3 intensity = intensityAlong(light, dir) / place.pdf;
+  if (light.radius == 0.0F) return intensity;
+  // A line through a sphere leaves it once but meets it twice: each place stands for half of what is sent along it.
+  return intensity * (0.5F * std::abs(cos_theta) / (kPi * light.radius * light.radius));
+}
+
+std::optional<float> LightSet::distanceTo(const LightPlace& place, vec3 position) const {
+  if (place.at_infinity) return kInfinity;
+  const vec3 way = place.position - position;
+  const float distance = length(way);
+  if (isDelta(place.source) || place.source >= probability_of_punctual_.size()) return distance;
+  const Light& light = scene_.scene().lights[place.source];
+  const vec3 from_centre = position - light.position;
+  if (dot(from_centre, from_centre) <= light.radius * light.radius) return std::nullopt;
+  // From the far side of the sphere the line goes on through it, by twice the radius times its cosine.
+  const float cos_theta = dot(place.normal, way) / distance;
+  return distance - std::max(2.0F * light.radius * cos_theta, 0.0F);
+}
+
 LightSet::Met LightSet::metSurface(vec3 vertex, const SurfacePoint& point, vec3 dir) const {
   Met met;
   const std::uint32_t index = mesh_light_of_instance_[point.instance];

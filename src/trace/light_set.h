@@ -27,6 +27,17 @@ struct LightSample {
   vec3 normal{0.0F};             ///< of the side of a mesh that shines here, unit; zero for other lights
 };
 
+/// A place on a light, or a direction of the sun, drawn without regard to whom it may shine at.
+struct LightPlace {
+  vec3 position{0.0F};  ///< m; of the sun, which is `at_infinity`, the unit direction towards it
+  bool at_infinity = false;
+  vec3 normal{0.0F};  ///< out of a mesh or a sphere, unit; zero for other lights
+  float pdf = 0.0F;   ///< per area, 1/m², or of a sun with a size per solid angle; else of the choice of light
+  std::uint32_t source = kNone;
+  std::uint32_t triangle = 0;  ///< of a mesh, with the barycentric weights of its second and third corner
+  float u = 0.0F, v = 0.0F;
+};
+
 /// A straight way from a light: what the densities of light paths depend on.
 struct LightRay {
   vec3 arrival;        ///< where it ends, world, m
@@ -45,6 +56,14 @@ class LightSet {
   bool empty() const { return entries_.empty(); }
   /// @param u_choice picks the light, @param u the place on it
   std::optional<LightSample> sample(vec3 position, float u_choice, vec2 u) const;
+
+  /// A place on any light but the environment, for which nothing is drawn. @param u_choice, u  as for `sample`
+  std::optional<LightPlace> samplePlace(float u_choice, vec2 u) const;
+  /// What a place sends along `dir` (travel), over its density: W/sr, or W/m² across the light of a sun.
+  vec3 emissionOf(const LightPlace& place, vec3 dir) const;
+  /// From `position` to where light along the line from the place last left its source, m; infinite for the sun;
+  /// nothing within a sphere, which shines outwards only.
+  std::optional<float> distanceTo(const LightPlace& place, vec3 position) const;
 
   /// Light met by chance: radiance, and the density with which `sample` would have found the same direction. Where
   /// several lights lie behind each other, each is met on its own, as each is sampled on its own.
@@ -112,6 +131,8 @@ class LightSet {
   void addEntry(Kind kind, std::size_t index, double weight);
   Met metSun(vec3 dir, std::uint32_t which) const;
   Met metSphere(vec3 vertex, const Ray& ray, float t_max, std::uint32_t which) const;
+  LightPlace samplePunctualPlace(const Light& light, vec2 u) const;
+  LightPlace sampleMeshPlace(const MeshLight& light, vec2 u) const;
   std::optional<LightSample> samplePunctual(const Light& light, vec3 position, vec2 u) const;
   std::optional<LightSample> sampleMesh(const MeshLight& light, vec3 position, vec2 u) const;
 

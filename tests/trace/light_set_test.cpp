@@ -25,6 +25,21 @@ struct Lit {
     }
     return sum / count;
   }
+  /// The same from places on the lights, whoever they shine at. Nothing is in the way.
+  double irradianceFromPlaces(vec3 position, int count = 1 << 14) const {
+    double sum = 0.0;
+    for (int i = 0; i < count; ++i) {
+      Sampler sampler(5, 6, static_cast<std::uint32_t>(i));
+      const float choice = sampler.next1D();
+      const auto place = lights.samplePlace(choice, sampler.next2D());
+      if (!place || !lights.distanceTo(*place, position)) continue;
+      const vec3 way = place->at_infinity ? place->position : place->position - position;
+      const double squared = place->at_infinity ? 1.0 : dot(way, way);
+      const vec3 dir = normalize(way);
+      sum += std::max(dir.y, 0.0F) * lights.emissionOf(*place, -dir).x / squared;
+    }
+    return sum / count;
+  }
   SceneData data;
   TraceScene scene;
   MaterialTable materials;
@@ -160,6 +175,33 @@ TEST(IntensityAlong, SpotFallsOffBetweenItsCones) {
   EXPECT_FLOAT_EQ(at(25), 0.0F);
   EXPECT_GT(at(12), at(17));
   EXPECT_GT(at(17), 0.0F);
+}
+
+TEST(LightSet, PlacesShineAsMuchAsDirectionsBring) {
+  SceneData data = makeFloorScene();
+  data.lights.push_back(test::makeSun(vec3(0.3F, -1, 0), vec3(2.0F), 20.0F));
+  data.lights.push_back(test::makeSun(vec3(0, -1, 0.2F), vec3(1.0F)));
+  data.lights.push_back(test::makePoint(vec3(0.4F, 2, 0), vec3(8.0F), 1.0F));
+  data.lights.push_back(test::makePoint(vec3(-1, 1, 0), vec3(3.0F)));
+  Material lamp = makeDiffuse(vec3(0.0F));
+  lamp.emission = vec3(4.0F);
+  addObject(data, makeRectangle("lamp", dvec3(0, 1.5, -1), dvec3(0.5, 0, 0), dvec3(0, 0.2, 0.5)), lamp);
+  const Lit lit(std::move(data));
+  const double expected = lit.irradiance(vec3(0.1F, 0, 0.2F));
+  EXPECT_NEAR(lit.irradianceFromPlaces(vec3(0.1F, 0, 0.2F), 1 << 16), expected, 0.005 * expected);
+}
+
+TEST(LightSet, ALineMeetsASphereWhereItComesOut) {
+  SceneData data = makeFloorScene();
+  data.lights.push_back(test::makePoint(vec3(0, 5, 0), vec3(8.0F), 1.0F));
+  const Lit lit(std::move(data));
+  LightPlace place;
+  place.source = 0;
+  for (const float side : {-1.0F, 1.0F}) {
+    place.normal = vec3(0, side, 0), place.position = vec3(0, 5.0F + side, 0);
+    EXPECT_FLOAT_EQ(lit.lights.distanceTo(place, vec3(0)).value(), 4.0F);
+  }
+  EXPECT_FALSE(lit.lights.distanceTo(place, vec3(0, 4.5F, 0)));
 }
 
 }  // namespace

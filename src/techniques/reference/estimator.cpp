@@ -10,13 +10,13 @@
 namespace nephroid {
 namespace {
 
-constexpr std::array<std::string_view, 5> kNames{"light", "footprint", "photon-map", "path", "vcm"};
+constexpr std::array<std::string_view, 6> kNames{"light", "footprint", "photon-map", "path", "manifold", "vcm"};
 
 /// As its name alone says.
 EstimatorChoice choiceOfOne(Estimator estimator) {
-  const bool alone = estimator == Estimator::kPath || estimator == Estimator::kVcm;
+  const bool only_photons_seen = estimator == Estimator::kLight || estimator == Estimator::kFootprint;
   return {estimator,
-          alone ? estimator : Estimator::kPhotonMap,
+          only_photons_seen ? Estimator::kPhotonMap : estimator,
           estimator == Estimator::kPath ? Estimator::kPath : Estimator::kLight,
           {}};
 }
@@ -39,10 +39,10 @@ ParamSpec makeEstimatorParam() {
       "",
       "what makes caustics. light: photons, each for the pixel that sees it; footprint: spread over what neighbours "
       "would cover, less and less; photon-map: gathered under kernels that shrink; path: paths from the eye alone, "
-      "for checking (needs lights with a size); vcm: photons seen, gathered and connected, and paths, each weighted by "
+      "for checking (needs lights with a size); manifold: walks from what is seen over one or two smooth interfaces to "
+      "the lights, photons for all other ways; vcm: photons seen, gathered and connected, and paths, each weighted by "
       "how well it does (no dispersion); auto: measures whether paths are better, as under large lights; else "
-      "footprint, "
-      "or light where errors are to be estimated",
+      "footprint, or light where errors are to be estimated",
       choices};
 }
 
@@ -66,7 +66,8 @@ PhotonPaths photonPathsOf(const EstimatorChoice& choice) {
   return {.caustic = choice.caustic != Estimator::kPath,
           .indirect = choice.indirect != Estimator::kPath,
           .specular_caustic = choice.specular_caustic != Estimator::kPath,
-          .specular_indirect = choice.specular_caustic == Estimator::kPhotonMap};
+          .specular_indirect =
+              choice.specular_caustic == Estimator::kPhotonMap || choice.specular_caustic == Estimator::kManifold};
 }
 
 void FootprintSpread::apply(const ReferenceWorld& world, LightTracer& tracer, PhotonBatch& batch) {

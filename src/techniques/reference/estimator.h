@@ -4,12 +4,14 @@
 //   footprint   photons, each spread over its footprint (see footprint.h): the least error until photons are many
 //   photon-map  photons gathered by paths from the eye under a kernel that shrinks (progressive photon mapping)
 //   path        paths from the eye alone: shares nothing with the others; needs lights with a size
+//   manifold    walks from what is seen over one or two smooth interfaces to the lights (see manifold/manifold.h);
+//               photons, each for the one pixel that sees it, for all longer or rougher ways
 //   vcm         all of these by their weights: vertex connection and merging (see vcm/vcm.h)
 //   auto        path where a pilot shows that it is better, for each kind of caustic; else footprint, or light where
 //               errors are to be estimated, for a footprint's blur is in no standard error
 //
 // Caustics in mirrors and through glass can be met by paths from the eye alone, so they are gathered by all but `path`
-// and `vcm`.
+// and `vcm`; `manifold` gathers what its walks cannot make.
 #pragma once
 
 #include <map>
@@ -26,7 +28,7 @@
 
 namespace nephroid {
 
-enum class Estimator : std::uint8_t { kLight, kFootprint, kPhotonMap, kPath, kVcm };
+enum class Estimator : std::uint8_t { kLight, kFootprint, kPhotonMap, kPath, kManifold, kVcm };
 
 ParamSpec makeEstimatorParam();
 /// What makes the paths whose light begins with S.

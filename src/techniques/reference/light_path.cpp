@@ -50,7 +50,8 @@ LightPath::LightPath(const LightPathContext& context, const Emitter& emitter, co
       state_{Ray{photon.origin, photon.dir}, emitter.interior()},
       flux_(photon.flux),
       emitted_(photon.flux),
-      footprint_(context.spread.cell > 0.0F ? emitter.extentOf(photon) : EmissionExtent{}, photon.dir) {
+      footprint_(context.spread.cell > 0.0F ? emitter.extentOf(photon) : EmissionExtent{}, photon.dir),
+      share_(emitter.source() == context.world.lights.sourceOfEnvironment()) {
   if (context.spread.cell <= 0.0F) footprint_.lose();
   depart();
 }
@@ -137,11 +138,11 @@ bool LightPath::scatter() {
     const bool first = stage_ == Stage::kSpecularChain;
     if (first) {
       ledger_->deposited += dvec3(rest);
-      deposit(weighted, wo);
+      if (!isLeft()) deposit(weighted, wo);
     } else if (deposits_again_) {
       depositAgain(weighted);
     }
-    if (first ? context_->connect_caustics : context_->connect_indirect) connectToCamera(bsdf, wo);
+    if (!isLeft() && (first ? context_->connect_caustics : context_->connect_indirect)) connectToCamera(bsdf, wo);
   }
   return continueWith(bsdf, specular_share, wo);
 }
@@ -207,6 +208,7 @@ bool LightPath::scatterSpecular(const Bsdf& bsdf, vec3 carried, float p_class) {
   }
   flux_ = unweighted;
   if (!s->pass && stage_ == Stage::kEmitted) stage_ = Stage::kSpecularChain;
+  if (!s->pass) share_.add(encounter_, -state_.ray.dir, s->dir, context_->world.options.specular_alpha);
   if (trail_.carried() && accounted()) trail_.scatter(surface(), -state_.ray.dir, *s, p_class);
   bendFootprint(*s, p_class);
   return leave(*s);

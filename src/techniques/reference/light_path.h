@@ -7,6 +7,7 @@
 
 #include "techniques/reference/footprint.h"
 #include "techniques/reference/footprint_splat.h"
+#include "techniques/reference/manifold/share.h"
 #include "techniques/reference/photon_tally.h"
 #include "techniques/reference/vcm/light_trail.h"
 #include "techniques/reference/world.h"
@@ -55,6 +56,7 @@ struct LightPathContext {
   PhotonTally& tally;
   CameraConnections& connections;
   const VcmTechniques* vcm = nullptr;  ///< null: photons carry no weights
+  bool leave_walked = false;           ///< caustics of the manifold walk (see share.h) are made by others
 };
 
 /// Trace `ray()` and tell `arrive` what it met, again and again, until that says the photon has ended.
@@ -91,6 +93,8 @@ class LightPath {
   bool staysUseful(float kept);
   void deposit(vec3 weighted, vec3 wo);
   void depositAgain(vec3 weighted);
+  /// A caustic that others make.
+  bool isLeft() const { return context_->leave_walked && stage_ == Stage::kSpecularChain && share_.isWalked(); }
   void connectToCamera(const Bsdf& bsdf, vec3 wo);
   VcmSurface surface() const { return VcmSurface::ofEncounter(encounter_, context_->world.options.specular_alpha); }
 
@@ -108,6 +112,7 @@ class LightPath {
   dvec3 roulette_{0.0};
   Footprint footprint_;
   VcmTrail trail_;
+  ManifoldShare share_;
 };
 
 }  // namespace nephroid

@@ -123,7 +123,8 @@ void LightTracer::trace(std::size_t emitter, const PhotonWave& wave, std::uint32
                                  .spread = view_ ? spread : FootprintScale{},
                                  .tally = tally,
                                  .connections = connections,
-                                 .vcm = vcm_};
+                                 .vcm = vcm_,
+                                 .leave_walked = leave_walked_};
   const std::function<vec3(std::uint64_t)> normal_of = [&](std::uint64_t p) { return lightNormalOf(emitter, p); };
   GroupTracer group(context, *emitters_[emitter], normal_of);
   for (std::size_t i = begin; i < end; i += kGroupPhotons)

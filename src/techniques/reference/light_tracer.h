@@ -32,6 +32,8 @@ class LightTracer {
     keep_deposits_ = true;
     keep_indirect_deposits_ = indirect_too;
   }
+  /// From now on caustics that a manifold walk finds (see manifold/share.h) are left to it, seen directly or not.
+  void leaveWalkedCaustics() { leave_walked_ = true; }
   /// From now on photons carry weights of vertex connection and merging, and leave their vertices in the tally.
   /// @param techniques  must outlive all that is traced
   void carryWeights(const VcmTechniques* techniques) { vcm_ = techniques; }
@@ -70,7 +72,7 @@ class LightTracer {
 
   const ReferenceWorld& world_;
   PhotonPaths connect_;
-  bool keep_deposits_ = false, keep_indirect_deposits_ = false;
+  bool keep_deposits_ = false, keep_indirect_deposits_ = false, leave_walked_ = false;
   const ReceiverView* view_ = nullptr;
   const VcmTechniques* vcm_ = nullptr;
   std::vector<bool> is_target_;

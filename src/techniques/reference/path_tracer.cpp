@@ -9,6 +9,9 @@ namespace {
 /// Events before Russian roulette begins: glass objects need a handful to be seen through.
 constexpr int kRouletteStart = 6;
 
+/// Walks on the specular manifold draw their numbers from a seed of their own: how many they take is left to chance.
+constexpr std::uint32_t kWalkSeedOffset = 0x6D6E6565U;
+
 float powerHeuristic(float pdf, float other) {
   if (!std::isfinite(pdf)) return 1.0F;
   const float a = pdf * pdf, b = other * other;
@@ -19,17 +22,19 @@ float powerHeuristic(float pdf, float other) {
 class EyePath {
  public:
   EyePath(const ReferenceWorld& world, const LayerNeeds& needs, const GatheredPhotons* photons,
-          const PhotonPaths& gathered, const PhotonPaths& left, Film& film, PathCounters& counters, std::size_t pixel,
-          Sampler sampler)
+          const PhotonPaths& gathered, const PhotonPaths& left, const Manifold* manifold, Film& film,
+          PathCounters& counters, std::size_t pixel, Sampler sampler, Sampler walk_sampler)
       : world_(world),
         needs_(needs),
         photons_(photons),
         gathered_(gathered),
         left_(left),
+        manifold_(manifold),
         film_(film),
         counters_(counters),
         pixel_(pixel),
-        sampler_(sampler) {}
+        sampler_(sampler),
+        walk_sampler_(walk_sampler) {}
 
   void trace(vec2 film_position) {
     state_.ray = world_.camera_model.rayThrough(film_position);
@@ -77,6 +82,7 @@ class EyePath {
     for (const EventClass c : {EventClass::kSpecular, EventClass::kDiffuse})
       if (bsdf.isEvaluable(c) && isWanted(class_.with(c))) connectToLight(bsdf, c);
     if (photons_ && bsdf.hasDiffuse()) gather(bsdf);
+    if (manifold_ && bsdf.hasDiffuse() && wantsWalk()) walkToLight(bsdf);
     return sampleNext(bsdf);
   }
 
@@ -133,6 +139,21 @@ class EyePath {
     const PathClass path =
         class_.with(EventClass::kDiffuse).with(EventClass::kDiffuse).with(EventClass::kSpecular);  // for one
     record(path, throughput_ * gatherFrom(grid, bsdf).radiance * inverse_area, vec3(0.0F));
+  }
+
+  bool wantsWalk() const {
+    if (class_.isEyeSpecular()) return needs_.throughSpecular();
+    return class_.count() == 0 && (needs_.caustic || needs_.irradiance || needs_.irradiance_caustic);
+  }
+  void walkToLight(const Bsdf& bsdf) {
+    const auto light = manifold_->estimate(encounter_, state_.interior, -state_.ray.dir, walk_sampler_, counters_.rays);
+    if (!light) return;
+    const vec3 incident = light->irradiance * bsdf.shadingCosineRatio(light->wi);
+    const vec3 radiance = incident * bsdf.evaluate(EventClass::kDiffuse, light->wi, Transport::kRadiance).f;
+    const vec3 normal = encounter_.point.normal_geometric;
+    const bool seen_side = dot(light->wi, normal) * dot(state_.ray.dir, normal) < 0.0F;
+    record(class_.with(EventClass::kDiffuse).with(EventClass::kSpecular), throughput_ * radiance,
+           class_.count() == 0 && seen_side ? incident : vec3(0.0F));
   }
 
   /// Can a path that begins with these events still end in a layer that was asked for?
@@ -264,10 +285,11 @@ class EyePath {
   const GatheredPhotons* photons_;
   const PhotonPaths& gathered_;
   const PhotonPaths& left_;  ///< gathered here, or made elsewhere
+  const Manifold* manifold_;
   Film& film_;
   PathCounters& counters_;
   std::size_t pixel_;
-  Sampler sampler_;
+  Sampler sampler_, walk_sampler_;
   PathState state_;
   Encounter encounter_;
   PathClass class_;
@@ -285,7 +307,8 @@ void PathTracer::tracePath(int x, int y, std::uint32_t sample, Film& film, PathC
   const auto pixel = static_cast<std::size_t>(y) * film.width + x;
   Sampler sampler(world_.options.seed, static_cast<std::uint32_t>(pixel), sample);
   const vec2 jitter = sampler.next2D();
-  EyePath path(world_, needs_, photons_, gathered_, left_, film, counters, pixel, sampler);
+  const Sampler walk_sampler(world_.options.seed + kWalkSeedOffset, static_cast<std::uint32_t>(pixel), sample);
+  EyePath path(world_, needs_, photons_, gathered_, left_, manifold_, film, counters, pixel, sampler, walk_sampler);
   path.trace(vec2(static_cast<float>(x), static_cast<float>(y)) + jitter);
 }
 

@@ -14,6 +14,7 @@
 
 #include "techniques/reference/film.h"
 #include "techniques/reference/gathered_photons.h"
+#include "techniques/reference/manifold/manifold.h"
 #include "techniques/reference/path_class.h"
 #include "techniques/reference/world.h"
 
@@ -35,6 +36,8 @@ class PathTracer {
     photons_ = photons;
     gathered_ = paths;
   }
+  /// From now on caustics over one or two interfaces, seen directly or not, are found by this, which must outlive it.
+  void walkFrom(const Manifold* manifold) { manifold_ = manifold; }
   /// One path through pixel (x, y), added to the film. Safe from any thread as long as no two share a pixel.
   void tracePath(int x, int y, std::uint32_t sample, Film& film, PathCounters& counters) const;
 
@@ -43,6 +46,7 @@ class PathTracer {
   const LayerNeeds& needs_;
   const GatheredPhotons* photons_ = nullptr;
   PhotonPaths left_, gathered_;
+  const Manifold* manifold_ = nullptr;
 };
 
 }  // namespace nephroid

@@ -78,6 +78,7 @@ class ReferenceRender {
                                            .specular_caustic = needs_.throughSpecular(),
                                            .specular_indirect = needs_.specular});
     }
+    if (choice_.caustic == Estimator::kManifold && light_tracer_) walkToLights();
     if (connects_and_merges && light_tracer_) vcm_ = std::make_unique<Vcm>(world_, *light_tracer_, needs_);
     if (light_tracer_) shareLedgers();
     if (settings.target_error > 0.0 && steering_.empty())
@@ -119,6 +120,12 @@ class ReferenceRender {
     if (const int bands = settings.params.getInt("bands"); bands > 0) options.spectral.bands = makeBands(bands);
     options.seed = foldSeed(settings.seed);
     return options;
+  }
+
+  void walkToLights() {
+    manifold_ = std::make_unique<Manifold>(world_, light_tracer_->targets(), light_tracer_->emitters());
+    path_tracer_.walkFrom(manifold_.get());
+    light_tracer_->leaveWalkedCaustics();
   }
 
   void chooseBudgets() {
@@ -451,6 +458,7 @@ class ReferenceRender {
   LayerNeeds path_needs_;  ///< of `path_tracer_`
   PathTracer path_tracer_;
   std::unique_ptr<LightTracer> light_tracer_;
+  std::unique_ptr<Manifold> manifold_;
   FootprintSpread footprints_;
   std::vector<GuidedLight> guided_;
   std::unique_ptr<PhotonBatch> photon_batch_;
