@@ -109,10 +109,10 @@ bool ownsStart(Flight flight) { return push.branch == (flight.passed ? 1u : 0u);
 
 /// Goes on along the branch, so that no two branches take the same path: at the first event one is reflected and the
 /// others are let in; of those, branch b leaves at its b-th chance, that is where something is let through from the
-/// inside, and is reflected at those before. Total reflection is no chance and is followed by all. Elsewhere (at what is
-/// met after leaving, or inside) the way that carries more is followed. The other is lost, but for the first one of
-/// branch 1, which a pass of its own may follow (TransportSettings::follows_weaker). Straight through a pane is no event:
-/// behind it branches b >= 1 are let in as well, and what is reflected there is lost.
+/// inside, and is reflected at those before. Total reflection is no chance and is followed by all. Elsewhere (at what
+/// is met after leaving, or inside) the way that carries more is followed. The other is lost, but for the first one of
+/// branch 1, which a pass of its own may follow (TransportSettings::follows_weaker). Straight through a pane is no
+/// event: behind it branches b >= 1 are let in as well, and what is reflected there is lost.
 Choice chooseWay(Way reflected, Way transmitted, uint events, bool is_inside, inout Flight flight) {
   if (events == 0u) {
     flight.decided = push.branch == 0u;
