@@ -110,4 +110,12 @@ inline void expectNear(const std::vector<std::vector<double>>& a, const std::vec
   EXPECT_NEAR(total_a, total_b, of_whole * total_b);
 }
 
+/// Settings of the reference for a small picture by one estimator.
+inline RenderSettings settingsOf(const std::string& estimator, int size, std::uint64_t samples, std::uint64_t photons,
+                                 std::vector<std::string> layers) {
+  RenderSettings settings = makeSettings(size, samples, photons, std::move(layers));
+  settings.params.set("estimator", estimator);
+  return settings;
+}
+
 }  // namespace nephroid::test

@@ -492,8 +492,9 @@ Technique makeReferenceTechnique() {
   Technique technique;
   technique.name = "reference";
   technique.text =
-      "path tracing and light tracing on the CPU, progressive: unbiased but for caustics, whose footprints and, in "
-      "mirrors and through glass, kernels shrink; the truth for all others";
+      "path tracing and light tracing on the CPU, progressive: unbiased but for caustics, whose footprints shrink, and "
+      "for what is seen of them and of what they light in mirrors and through glass, whose kernels shrink; the truth "
+      "for all others";
   technique.source = "Kajiya 1986; Arvo 1986; Veach 1997; Igehy 1999; Knaus & Zwicker 2011";
   technique.is_progressive = true;
   technique.params = {

@@ -6,29 +6,15 @@
 #include <memory>
 
 #include "scene/load.h"
-#include "support/tiny_scenes.h"
+#include "support/lid_scene.h"
 
 namespace nephroid {
 namespace {
 
-using test::addObject;
-using test::makeDiffuse;
-using test::makeGlass;
+using test::makeLid;
 using test::makeSettings;
 
 const Camera kAbove = makeCamera("above", vec3(2.0F, 4.5F, 3.0F), vec3(0, 0.5F, 0), radians(40));
-
-/// A slab of glass over a floor between two walls.
-SceneData makeLid() {
-  SceneData scene;
-  addObject(scene, test::makeFloor(5.0), makeDiffuse(vec3(0.8F)));
-  addObject(scene, makeRectangle("left", dvec3(-1.5, 0.75, 0), dvec3(0, 0.75, 0), dvec3(0, 0, 2.5)),
-            makeDiffuse(vec3(0.8F)));
-  addObject(scene, makeRectangle("back", dvec3(0, 0.75, -1.5), dvec3(0, 0, 2.5), dvec3(0, 0.75, 0)),
-            makeDiffuse(vec3(0.8F)));
-  addObject(scene, makeBox("slab", dvec3(-2.5, 1.5, -2.5), dvec3(2.5, 1.8, 2.5)), makeGlass(1.5F));
-  return scene;
-}
 
 SceneData underEvenSky(SceneData scene) {
   auto image = std::make_shared<Image>(8, 4, 3, 1.0F);

@@ -7,6 +7,7 @@
 
 #include "nephroid/error.h"
 #include "support/block_means.h"
+#include "support/lid_scene.h"
 #include "support/tiny_scenes.h"
 #include "techniques/layers.h"
 
@@ -113,13 +114,7 @@ TEST(Reference, CausticsThroughGlassAgreeBetweenPhotonsAndPaths) {
 /// A slab of glass over a floor between two walls, under a lamp: most of what is seen through the slab is what the
 /// light through it lights in turn.
 SceneData makeLidScene() {
-  SceneData scene;
-  addObject(scene, test::makeFloor(5.0), makeDiffuse(vec3(0.8F)));
-  addObject(scene, makeRectangle("left", dvec3(-1.5, 0.75, 0), dvec3(0, 0.75, 0), dvec3(0, 0, 2.5)),
-            makeDiffuse(vec3(0.8F)));
-  addObject(scene, makeRectangle("back", dvec3(0, 0.75, -1.5), dvec3(0, 0, 2.5), dvec3(0, 0.75, 0)),
-            makeDiffuse(vec3(0.8F)));
-  addObject(scene, makeBox("slab", dvec3(-2.5, 1.5, -2.5), dvec3(2.5, 1.8, 2.5)), makeGlass(1.5F));
+  SceneData scene = test::makeLid();
   addObject(scene, makeRectangle("lamp", dvec3(0, 4, 0), dvec3(2.0, 0, 0), dvec3(0, 0, 2.0)), makeLamp(vec3(5.0F)));
   return scene;
 }

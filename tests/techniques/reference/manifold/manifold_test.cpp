@@ -14,15 +14,8 @@ using test::expectAgreement;
 using test::makeGlass;
 using test::makeLamp;
 using test::makeMetal;
-using test::makeSettings;
 using test::renderReference;
-
-RenderSettings settingsOf(const std::string& estimator, int size, std::uint64_t samples, std::uint64_t photons,
-                          std::vector<std::string> layers) {
-  RenderSettings settings = makeSettings(size, samples, photons, std::move(layers));
-  settings.params.set("estimator", estimator);
-  return settings;
-}
+using test::settingsOf;
 
 Material makeColouredGlass() {
   Material m = makeGlass(1.33F);

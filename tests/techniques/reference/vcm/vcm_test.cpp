@@ -16,15 +16,8 @@ using test::makeDiffuse;
 using test::makeGlass;
 using test::makeLamp;
 using test::makeMetal;
-using test::makeSettings;
 using test::renderReference;
-
-RenderSettings settingsOf(const std::string& estimator, int size, std::uint64_t samples, std::uint64_t photons,
-                          std::vector<std::string> layers) {
-  RenderSettings settings = makeSettings(size, samples, photons, std::move(layers));
-  settings.params.set("estimator", estimator);
-  return settings;
-}
+using test::settingsOf;
 
 /// The kernel blurs, the less the more photons there are; the whole is hardly touched.
 constexpr double kOfBlock = 0.08, kOfWhole = 0.015;
