@@ -238,7 +238,7 @@ class PhotonTrial {
     ++caustic_.passes;
   }
   void gatherFrom(const PhotonBatch& batch, std::uint32_t index) {
-    gathered_.take(batch, index + 1);
+    gathered_.take(batch, index);
     for (std::uint32_t pass = 0; pass < kPassesPerBatch; ++pass)
       eye_rays_ += tracePass(path_tracer_, index * kPassesPerBatch + pass, film_);
     specular_caustic_.spread.close(film_.specular_caustic, 1.0 / kPassesPerBatch);

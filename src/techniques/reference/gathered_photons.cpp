@@ -6,10 +6,12 @@
 namespace nephroid {
 namespace {
 
-/// Photons under the first kernel, were they spread evenly: fewer is noise, more is blur.
-constexpr int kGatherPhotons = 10;
+/// Photons under a kernel of the first batch: fewer is noise, more is blur.
+constexpr float kGatherPhotons = 10.0F;
 /// Share of the photons that a shrinking kernel keeps; 2/3 balances bias and variance (Knaus & Zwicker 2011).
 constexpr double kRadiusAlpha = 2.0 / 3.0;
+/// Kernels at most, and at least, over one that suits the map as a whole.
+constexpr float kWidest = 3.0F, kNarrowest = 0.25F;
 
 using Deposits = std::vector<GridPhoton> PhotonTally::*;
 
@@ -26,38 +28,40 @@ std::vector<GridPhoton> collect(const PhotonBatch& batch, Deposits kind) {
 
 }  // namespace
 
-/// Knaus & Zwicker 2011, eq. 15.
-void GatheredPhotons::Map::shrink(std::uint64_t batches) {
-  const auto k = static_cast<double>(batches - 1);
-  radius_squared *= (k + kRadiusAlpha) / (k + 1.0);
-}
-
-void GatheredPhotons::Map::replace(const std::vector<GridPhoton>& deposits) {
-  const auto radius = static_cast<float>(std::sqrt(radius_squared));
-  grid = radius > 0.0F ? PhotonGrid(deposits, radius) : PhotonGrid();
-}
-
-void GatheredPhotons::take(const PhotonBatch& batch, std::uint64_t batches) {
-  const auto takeInto = [&](Map& map, Deposits kind, const auto& chooseRadius) {
-    const std::vector<GridPhoton> deposits = collect(batch, kind);
-    if (map.radius_squared == 0.0) {
-      const double radius = chooseRadius(deposits, kGatherPhotons);
-      map.radius_squared = radius * radius;
-    } else {
-      map.shrink(batches);
+template <class ChooseRadius>
+void GatheredPhotons::Map::take(const std::vector<GridPhoton>& photons, std::uint64_t batch,
+                                ChooseRadius&& choose_radius) {
+  if (decided_by == kUndecided) {
+    const float radius = choose_radius(photons, kGatherPhotons);
+    if (radius > 0.0F) {
+      radii = KernelRadii(photons, kGatherPhotons, kNarrowest * radius, kWidest * radius);
+      decided_by = batch;
     }
-    map.replace(deposits);
-  };
-  takeInto(caustics_, &PhotonTally::caustic_deposits, chooseGatherRadius);
-  takeInto(indirect_, &PhotonTally::indirect_deposits, chooseTypicalRadius);
+  }
+  kernels = decided_by != kUndecided ? KernelMap(photons, radii, std::sqrt(shrinkAreas(batch))) : KernelMap();
 }
 
-void GatheredPhotons::retake(const PhotonBatch& batch) {
-  caustics_.replace(collect(batch, &PhotonTally::caustic_deposits));
-  indirect_.replace(collect(batch, &PhotonTally::indirect_deposits));
+void GatheredPhotons::take(const PhotonBatch& batch, std::uint64_t batch_index) {
+  caustics_.take(collect(batch, &PhotonTally::caustic_deposits), batch_index, chooseGatherRadius);
+  indirect_.take(collect(batch, &PhotonTally::indirect_deposits), batch_index, chooseTypicalRadius);
 }
 
-float chooseTypicalRadius(const std::vector<GridPhoton>& photons, int expected) {
+std::vector<std::uint64_t> GatheredPhotons::decisiveBatches() const {
+  std::vector<std::uint64_t> batches;
+  for (const Map* map : {&caustics_, &indirect_})
+    if (map->decided_by != kUndecided) batches.push_back(map->decided_by);
+  std::sort(batches.begin(), batches.end());
+  batches.erase(std::unique(batches.begin(), batches.end()), batches.end());
+  return batches;
+}
+
+float shrinkAreas(std::uint64_t batch) {
+  const auto k = static_cast<double>(batch);
+  return static_cast<float>(
+      std::exp(std::lgamma(k + 1.0 + kRadiusAlpha) - std::lgamma(1.0 + kRadiusAlpha) - std::lgamma(k + 2.0)));
+}
+
+float chooseTypicalRadius(const std::vector<GridPhoton>& photons, float expected) {
   // Of some photons the distance to the tenth other among some; among all of them it is the nearer the more they are.
   constexpr std::size_t kAsked = 64, kOthers = 1 << 14;
   if (photons.size() < 2) return 0.0F;

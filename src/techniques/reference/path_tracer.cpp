@@ -92,53 +92,47 @@ class EyePath {
     if (gathered_.specular_indirect && class_.isEyeSpecular()) gatherIndirect(bsdf);
   }
 
-  /// What a search finds, times the kernel's area.
+  /// What kernels about a point say of it.
   struct Gathered {
     vec3 radiance{0.0F};
     vec3 irradiance{0.0F};  ///< where it is seen directly
-    vec3 inner{0.0F};       ///< radiance of the half of the kernel about the point
+    vec3 inner{0.0F};       ///< part of the radiance: from the half of each kernel about its photon
   };
-  /// Density of photons about the point, by a disc on its plane.
-  Gathered gatherFrom(const PhotonGrid& grid, const Bsdf& bsdf) {
+  Gathered gatherFrom(const KernelMap& map, const Bsdf& bsdf) {
     const SurfacePoint& point = encounter_.point;
-    const float radius = grid.radius();
     Gathered found;
     const bool seen_directly = class_.count() == 0;
-    // A photon of another surface nearby would leak light around edges.
-    grid.visitDisc(point.position, point.normal_geometric, kKernelFlatness, [&](const GridPhoton& photon) {
-      const vec3 wi = -photon.dir, offset = photon.position - point.position;
-      const vec3 value =
-          photon.flux * bsdf.evaluate(EventClass::kDiffuse, wi, Transport::kRadiance).f * bsdf.shadingCosineRatio(wi);
+    map.visitKernels(point.position, point.normal_geometric, [&](const KernelPhoton& photon, float distance_squared) {
+      const vec3 wi = -photon.dir, incident = photon.flux * (photon.inverse_area * bsdf.shadingCosineRatio(wi));
+      const vec3 value = incident * bsdf.evaluate(EventClass::kDiffuse, wi, Transport::kRadiance).f;
       found.radiance += value;
-      if (dot(offset, offset) <= 0.5F * radius * radius) found.inner += value;
+      if (distance_squared <= 0.5F * photon.radius_squared) found.inner += value;
       // As for light that is connected to the camera: on the side that the eye sees.
       if (seen_directly && dot(wi, point.normal_geometric) * dot(state_.ray.dir, point.normal_geometric) < 0.0F)
-        found.irradiance += photon.flux * bsdf.shadingCosineRatio(wi);
+        found.irradiance += incident;
     });
     return found;
   }
 
   void gatherCaustic(const Bsdf& bsdf) {
-    const PhotonGrid& grid = photons_->caustics();
-    if (grid.empty()) return;
-    const Gathered found = gatherFrom(grid, bsdf);
-    const float inverse_area = 1.0F / (kPi * grid.radius() * grid.radius());
-    record(class_.with(EventClass::kDiffuse).with(EventClass::kSpecular), throughput_ * found.radiance * inverse_area,
-           found.irradiance * inverse_area);
+    const KernelMap& map = photons_->caustics();
+    if (map.empty()) return;
+    const Gathered found = gatherFrom(map, bsdf);
+    record(class_.with(EventClass::kDiffuse).with(EventClass::kSpecular), throughput_ * found.radiance,
+           found.irradiance);
     if (!film_.specular_caustic_bias.active() || !class_.isEyeSpecular()) return;
-    // Where light varies smoothly a kernel errs in proportion to its area (Knaus & Zwicker 2011), so by twice what the
-    // whole says more than its half.
-    const vec3 bias = 2.0F * state_.hero.weight * throughput_ * inverse_area * (found.radiance - 2.0F * found.inner);
+    // Where light varies smoothly a kernel errs in proportion to its area at most (Knaus & Zwicker 2011), so by twice
+    // what the whole says more than its half.
+    const vec3 bias = 2.0F * state_.hero.weight * throughput_ * (found.radiance - 2.0F * found.inner);
     if (isFinite(bias)) film_.specular_caustic_bias.add(pixel_, bias);
   }
 
   void gatherIndirect(const Bsdf& bsdf) {
-    const PhotonGrid& grid = photons_->indirect();
-    if (grid.empty()) return;
-    const float inverse_area = 1.0F / (kPi * grid.radius() * grid.radius());
+    const KernelMap& map = photons_->indirect();
+    if (map.empty()) return;
     const PathClass path =
         class_.with(EventClass::kDiffuse).with(EventClass::kDiffuse).with(EventClass::kSpecular);  // for one
-    record(path, throughput_ * gatherFrom(grid, bsdf).radiance * inverse_area, vec3(0.0F));
+    record(path, throughput_ * gatherFrom(map, bsdf).radiance, vec3(0.0F));
   }
 
   bool wantsWalk() const {

@@ -74,6 +74,7 @@ class ReferenceRender {
     path_tracer_.leaveToPhotons(from_photons);
     if (gather_) {
       light_tracer_->keepDeposits(needs_.specular);
+      steering_.watchGathering();
       path_tracer_.gatherFrom(&gathered_, {.caustic = gather_direct,
                                            .specular_caustic = needs_.throughSpecular(),
                                            .specular_indirect = needs_.specular});
@@ -210,10 +211,12 @@ class ReferenceRender {
     return share(photons_done_, photons_budget_) <= share(samples_done_, samples_budget_);
   }
   bool photonsLessenError() const {
-    // Paths that gather the same photons over and over err alike.
-    const std::uint64_t together = steering_.batchPasses();
-    if (gather_ && samples_done_ - samples_at_photons_ < together) return false;
-    if (gather_ && batches_done_ < samples_done_ / together) return true;
+    if (gather_) {
+      // Paths that gather the same photons over and over err alike.
+      const std::uint64_t rounds = samples_done_ - samples_at_photons_;
+      if (steering_.mustGatherOn(rounds)) return false;
+      if (!steering_.mayGatherOn(rounds, samples_done_)) return true;
+    }
     if (!steering_.isKnown()) return share(photons_done_, kDefaultPhotons) <= share(samples_done_, kDefaultSamples);
     return steering_.photonsPay(path_rays_, light_rays_);
   }
@@ -240,7 +243,7 @@ class ReferenceRender {
     path_rays_ += rays, not_finite_ += not_finite;
     if (passes_.planned()) return;
     ++samples_done_;
-    if (!gather_ || !photonsLeft()) steering_.takePaths(passes_);
+    steering_.takePaths(passes_, gather_ && photonsLeft());
   }
   void tracePhotons() {
     if (vcm_) vcm_->prepareBatch(batches_done_);
@@ -255,10 +258,10 @@ class ReferenceRender {
       not_finite_ += chunk.tally.not_finite;
       photons_done_ += static_cast<std::uint64_t>(chunk.tally.ledger.emitted_count);
     }
+    if (gather_) gathered_.take(*photon_batch_, batches_done_);
     ++batches_done_;
     steering_.takePhotons(passes_, batches_done_, gather_);
     samples_at_photons_ = samples_done_;
-    if (gather_) gathered_.take(*photon_batch_, batches_done_);
   }
 
   void addSplat(const Splat& splat, std::uint32_t pixel, std::span<const float> weights) {
@@ -326,17 +329,28 @@ class ReferenceRender {
       throw InputError(
           fmt::format("{}: holds other sums than this render has; delete it to begin anew", settings_.checkpoint.path));
     if (light_tracer_) makePhotonBatch(batch_photons_);
-    if ((gather_ || vcm_) && batches_done_ > 0) retraceLastBatch();
+    if ((gather_ || vcm_) && batches_done_ > 0) retraceBatches();
     steering_.estimate();
     result.notes.push_back(fmt::format("went on from {} with {} samples, {:.1f} M photons", settings_.checkpoint.path,
                                        samples_done_, static_cast<double>(photons_done_) * 1e-6));
   }
 
-  void retraceLastBatch() {
-    if (vcm_) vcm_->prepareBatch(batches_done_ - 1);
-    if (!photon_batch_->trace(batches_done_ - 1, [&] { return stopped(); })) return;
-    if (vcm_) vcm_->takeBatch(batches_done_ - 1, *photon_batch_);
-    if (gather_) gathered_.retake(*photon_batch_);
+  /// Those that the next step depends on.
+  void retraceBatches() {
+    if (gather_) {
+      const std::vector<std::uint64_t> decisive = gathered_.decisiveBatches();
+      gathered_ = {};
+      for (const std::uint64_t batch : decisive) {
+        // Not stopped: what is saved at the end must know of them.
+        photon_batch_->trace(batch, [] { return false; });
+        gathered_.take(*photon_batch_, batch);
+      }
+    }
+    const std::uint64_t last = batches_done_ - 1;
+    if (vcm_) vcm_->prepareBatch(last);
+    if (!photon_batch_->trace(last, [&] { return stopped(); })) return;
+    if (vcm_) vcm_->takeBatch(last, *photon_batch_);
+    if (gather_) gathered_.take(*photon_batch_, last);
   }
 
   void shareLedgers() {

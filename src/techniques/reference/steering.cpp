@@ -6,6 +6,8 @@ namespace nephroid {
 namespace {
 
 constexpr std::uint64_t kMostBatchPasses = 4;
+/// Rounds that gather the same photons at most: this part of all.
+constexpr std::uint64_t kBatchShare = 8;
 
 /// Those whose errors were asked for, and without a target those that steer: `beauty`, or else all.
 std::vector<std::string> chooseLayers(const Film& film, const RenderSettings& settings, const LayerNeeds& needs,
@@ -30,14 +32,20 @@ Steering::Steering(const Film& film, const RenderSettings& settings, const Layer
       needs_(needs),
       adaptive_(adaptive),
       steers_(settings.target_error > 0.0 || (isTimedOnly(settings) && adaptive)),
+      film_(film),
       errors_(film, chooseLayers(film, settings, needs, steers_)) {}
+
+void Steering::watchGathering() {
+  if (steers_ && !errors_.empty()) probe_.emplace(film_, needs_.beauty ? "beauty" : "specular");
+}
 
 void Steering::chooseBatches(std::uint64_t passes) {
   batch_passes_ = std::clamp<std::uint64_t>(passes / kBatches, 1, kMostBatchPasses);
 }
 
-void Steering::takePaths(const EyePasses& passes) {
-  if (errors_.empty()) return;
+void Steering::takePaths(const EyePasses& passes, bool gather) {
+  if (probe_) probe_->takeRound(passes.done());
+  if (errors_.empty() || gather) return;
   errors_.closeFullEyeBatches(passes.done(), batch_passes_);
   estimate();
 }
@@ -46,6 +54,7 @@ void Steering::takePhotons(const EyePasses& passes, std::uint64_t batches, bool 
   if (errors_.empty()) return;
   errors_.closeLightBatch(batches);
   if (gathered) errors_.closeEyeBatches(passes.done());
+  if (probe_) probe_->closeBatch();
   estimate();
 }
 
@@ -64,9 +73,14 @@ bool Steering::reachesTarget() const {
   return settings_.target_error > 0.0 && isKnown() && error_.error.total() <= settings_.target_error;
 }
 
+bool Steering::mayGatherOn(std::uint64_t rounds_of_batch, std::uint64_t rounds) const {
+  return isKnown() && rounds_of_batch < std::max(batch_passes_, rounds / kBatchShare);
+}
+
 bool Steering::photonsPay(std::uint64_t path_rays, std::uint64_t light_rays) const {
-  return error_.error.from_lights * static_cast<double>(path_rays) >=
-         error_.error.from_eye * static_cast<double>(light_rays);
+  const double gathered = probe_ ? error_.error.from_eye * probe_->photonsShare() : 0.0;
+  return (error_.error.from_lights + gathered) * static_cast<double>(path_rays) >=
+         (error_.error.from_eye - gathered) * static_cast<double>(light_rays);
 }
 
 void Steering::planRound(EyePasses& passes) const {

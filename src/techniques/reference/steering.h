@@ -3,12 +3,14 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "techniques/reference/error_estimate.h"
 #include "techniques/reference/eye_passes.h"
 #include "techniques/reference/film.h"
+#include "techniques/reference/gather_probe.h"
 #include "techniques/technique.h"
 
 namespace nephroid {
@@ -24,6 +26,8 @@ class Steering {
   /// @param adaptive  passes from the eye may go where errors are large
   Steering(const Film& film, const RenderSettings& settings, const LayerNeeds& needs, bool adaptive);
 
+  /// Paths gather photons: from here on, before any, it is measured whose noise theirs is.
+  void watchGathering();
   /// Nobody asked for errors, and nothing is steered by them.
   bool empty() const { return errors_.empty(); }
   /// Errors decide what is next, at the latest once they are known.
@@ -36,8 +40,9 @@ class Steering {
   void chooseBatches(std::uint64_t passes);
   std::uint64_t batchPasses() const { return batch_passes_; }
 
-  /// After a round of paths: closes their batches where they are long enough.
-  void takePaths(const EyePasses& passes);
+  /// After a round of paths. @param gather  the same photons as the next: batches are closed by takePhotons(). Else
+  /// they are closed where they are long enough
+  void takePaths(const EyePasses& passes, bool gather);
   /// After a batch of photons. @param gathered  paths gathered the one before: all that did are one batch
   void takePhotons(const EyePasses& passes, std::uint64_t batches, bool gathered);
   /// At the end: nothing is left out of the estimate.
@@ -50,6 +55,11 @@ class Steering {
   /// Of the layer that steers, at the last closed batches.
   const ErrorEstimate::OfLayer& error() const { return error_; }
   bool reachesTarget() const;
+  /// May one more round of paths gather the photons of the latest batch? Some must, and each time about an eighth more,
+  /// so that there are batches enough to know the error by.
+  bool mayGatherOn(std::uint64_t rounds_of_batch, std::uint64_t rounds) const;
+  /// Have so few rounds gathered them that more are due, whatever pays?
+  bool mustGatherOn(std::uint64_t rounds_of_batch) const { return rounds_of_batch < batch_passes_; }
   /// Do photons lessen the error more by another ray? A variance falls by its share per pass, and a pass costs rays.
   /// Rays, not seconds: equal renders must take equal steps.
   bool photonsPay(std::uint64_t path_rays, std::uint64_t light_rays) const;
@@ -58,6 +68,7 @@ class Steering {
   template <class State>
   void visitState(State& state) {
     errors_.visitState(state);
+    if (probe_) probe_->visitState(state);
   }
 
  private:
@@ -66,8 +77,10 @@ class Steering {
   const RenderSettings& settings_;
   const LayerNeeds& needs_;
   bool adaptive_, steers_;
+  const Film& film_;
   ErrorEstimate errors_;
   ErrorEstimate::OfLayer error_;
+  std::optional<GatherProbe> probe_;
   std::vector<double> pass_variances_;  ///< of that layer, by tile; empty until they are known
   std::uint64_t batch_passes_ = 1;
 };

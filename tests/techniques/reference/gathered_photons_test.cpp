@@ -43,5 +43,14 @@ TEST(ChooseTypicalRadius, OfFewPhotonsReachesThemAll) {
   EXPECT_EQ(chooseTypicalRadius({}, 10), 0.0F);
 }
 
+TEST(ShrinkAreas, IsTheProductOfTheStepsBefore) {
+  double product = 1.0;
+  for (std::uint64_t batch = 0; batch < 40; ++batch) {
+    const auto j = static_cast<double>(batch);
+    if (batch > 0) product *= (j + 2.0 / 3.0) / (j + 1.0);
+    EXPECT_NEAR(shrinkAreas(batch) / product, 1.0, 1e-5) << batch;
+  }
+}
+
 }  // namespace
 }  // namespace nephroid
