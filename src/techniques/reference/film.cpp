@@ -14,7 +14,8 @@ LayerNeeds::LayerNeeds(const std::vector<std::string>& layers) {
   beauty = has("beauty");
   emission = beauty || has("emission");
   direct = beauty || has("direct");
-  caustic = beauty || has("caustic");
+  caustic_bias = has("caustic_bias");
+  caustic = beauty || has("caustic") || caustic_bias;
   specular = beauty || has("specular");
   indirect = beauty || has("indirect");
   specular_caustic = has("specular_caustic");
@@ -36,6 +37,7 @@ Film::Film(int w, int h, const LayerNeeds& needs) : width(w), height(h) {
   activate(indirect_from_eye, needs.indirect);
   activate(indirect, needs.indirect);
   activate(specular_caustic, needs.specular_caustic);
+  activate(caustic_bias, needs.caustic_bias);
   activate(specular_caustic_bias, needs.specular_caustic_bias);
   activate(irradiance_from_eye, needs.irradiance);
   activate(irradiance, needs.irradiance);
@@ -54,6 +56,7 @@ std::vector<LayerPlanes> planesOf(const Film& film, std::string_view layer) {
                            {"indirect", {&film.indirect_from_eye, &film.indirect}},
                            {"emission", {&film.emission, nullptr}},
                            {"specular_caustic", {&film.specular_caustic, nullptr}},
+                           {"caustic_bias", {&film.caustic_bias, nullptr}},
                            {"specular_caustic_bias", {&film.specular_caustic_bias, nullptr}},
                            {"irradiance", {&film.irradiance_from_eye, &film.irradiance}},
                            {"irradiance_caustic", {&film.irradiance_caustic_from_eye, &film.irradiance_caustic}}};

@@ -36,16 +36,18 @@ class FilmPlane {
   std::vector<double> values_;
 };
 
-/// Which layers were asked for, as flags, and what follows for the estimators. The error of a layer needs the layer.
+/// Which layers were asked for, as flags, and what follows for the estimators. The error of a layer and its bias
+/// need the layer.
 struct LayerNeeds {
   explicit LayerNeeds(const std::vector<std::string>& layers);
   bool emission, direct, caustic, specular, indirect, specular_caustic, irradiance, irradiance_caustic, beauty;
-  bool specular_caustic_bias;
+  bool caustic_bias, specular_caustic_bias;
   bool geometry;  ///< any of albedo, normal, position, depth, id
   /// The same without caustics, seen directly or through specular surfaces, on their own.
   LayerNeeds withoutCaustics() const {
     LayerNeeds rest = *this;
-    rest.caustic = rest.irradiance_caustic = rest.specular_caustic = rest.specular_caustic_bias = false;
+    rest.caustic = rest.irradiance_caustic = rest.specular_caustic = false;
+    rest.caustic_bias = rest.specular_caustic_bias = false;
     return rest;
   }
   bool anyIrradiance() const { return irradiance || irradiance_caustic; }
@@ -68,8 +70,8 @@ struct Film {
   Film(int width, int height, const LayerNeeds& needs);
   int width, height;
   // From the eye, to be divided by the samples per pixel.
-  FilmPlane emission, direct, caustic_from_eye, specular, indirect_from_eye, specular_caustic, specular_caustic_bias,
-      irradiance_from_eye, irradiance_caustic_from_eye;
+  FilmPlane emission, direct, caustic_from_eye, specular, indirect_from_eye, specular_caustic, caustic_bias,
+      specular_caustic_bias, irradiance_from_eye, irradiance_caustic_from_eye;
   // From the lights, to be divided by the number of batches.
   FilmPlane caustic, indirect, irradiance, irradiance_caustic;
 
@@ -77,8 +79,8 @@ struct Film {
   template <class Visit>
   void visitPlanes(const Visit& visit) {
     for (FilmPlane* plane : {&emission, &direct, &caustic_from_eye, &specular, &indirect_from_eye, &specular_caustic,
-                             &specular_caustic_bias, &irradiance_from_eye, &irradiance_caustic_from_eye, &caustic,
-                             &indirect, &irradiance, &irradiance_caustic})
+                             &caustic_bias, &specular_caustic_bias, &irradiance_from_eye, &irradiance_caustic_from_eye,
+                             &caustic, &indirect, &irradiance, &irradiance_caustic})
       visit(*plane);
   }
 };

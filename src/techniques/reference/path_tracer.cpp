@@ -120,11 +120,12 @@ class EyePath {
     const Gathered found = gatherFrom(map, bsdf);
     record(class_.with(EventClass::kDiffuse).with(EventClass::kSpecular), throughput_ * found.radiance,
            found.irradiance);
-    if (!film_.specular_caustic_bias.active() || !class_.isEyeSpecular()) return;
+    FilmPlane& plane = class_.count() == 0 ? film_.caustic_bias : film_.specular_caustic_bias;
+    if (!plane.active()) return;
     // Where light varies smoothly a kernel errs in proportion to its area at most (Knaus & Zwicker 2011), so by twice
     // what the whole says more than its half.
     const vec3 bias = 2.0F * state_.hero.weight * throughput_ * (found.radiance - 2.0F * found.inner);
-    if (isFinite(bias)) film_.specular_caustic_bias.add(pixel_, bias);
+    if (isFinite(bias)) plane.add(pixel_, bias);
   }
 
   void gatherIndirect(const Bsdf& bsdf) {

@@ -447,6 +447,9 @@ class ReferenceRender {
       result.notes.emplace_back("standard errors are infinite: they take two batches at least; raise the budget");
     if (needs_.specular_caustic_bias && !gather_ && !vcm_)
       result.notes.emplace_back("specular_caustic_bias is black: nothing is gathered under a kernel");
+    const bool gathers_seen = choice_.caustic == Estimator::kPhotonMap || vcm_;
+    if (needs_.caustic_bias && !(gathers_seen && light_tracer_))
+      result.notes.emplace_back("caustic_bias is black: only photon-map and vcm gather caustics seen directly");
     if (not_finite_ > 0)
       result.notes.push_back(fmt::format("{} path contributions were not finite and were dropped", not_finite_));
   }

@@ -108,7 +108,7 @@ TEST_F(None, YieldsTheLayersAskedForAndLeavesTheRestBlackAndNoted) {
   const std::string not_made =
       "caustic,indirect,specular_caustic,irradiance,irradiance_caustic,beauty_error,direct_error,caustic_error,"
       "specular_error,indirect_error,emission_error,specular_caustic_error,irradiance_error,irradiance_caustic_error,"
-      "specular_caustic_bias";
+      "caustic_bias,specular_caustic_bias";
   EXPECT_EQ(result.image.metadata.at("not_made"), not_made);
   EXPECT_EQ(result.image.metadata.at("not_in_beauty"), "caustic,indirect");
   for (const std::string& name : parseLayerList(not_made)) {

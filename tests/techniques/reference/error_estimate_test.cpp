@@ -164,27 +164,28 @@ SceneData makeSlabScene() {
   return scene;
 }
 
-TEST(KernelBias, IsWhatTheKernelTakesFromAPeak) {
+/// The peak under the slab, as a layer that a camera above or below the slab sees it in.
+void expectBiasOfPeak(const std::string& layer, const vec3& eye, float fov) {
   const SceneData scene = makeSlabScene();
-  const Camera camera = makeCamera("middle", vec3(0.7F, 0.9F, 0.0F), vec3(0), radians(12));
-  const auto meanOf = [&](const RenderSettings& settings, const char* layer) {
-    return test::meanOf(*renderReference(scene, camera, settings).image.find(layer)).y;
+  const Camera camera = makeCamera("middle", eye, vec3(0), fov);
+  const auto meanOf = [&](const RenderSettings& settings, const std::string& name) {
+    return test::meanOf(*renderReference(scene, camera, settings).image.find(name)).y;
   };
-  RenderSettings paths = makeSettings(8, 16384, 0, {"specular_caustic"});
+  RenderSettings paths = makeSettings(8, 16384, 0, {layer});
   paths.params.set("estimator", "path");
-  const double truth = meanOf(paths, "specular_caustic");
+  const double truth = meanOf(paths, layer);
   // So few photons that all kernels are as wide as they may be: where they follow the density their blur cancels.
-  RenderSettings photons = makeSettings(8, 32, 16 * 128, {"specular_caustic", "specular_caustic_bias"});
+  RenderSettings photons = makeSettings(8, 32, 16 * 128, {layer, layer + "_bias"});
   // Batches as where errors are estimated.
-  photons.layers.emplace_back("specular_caustic_error");
+  photons.layers.push_back(layer + "_error");
   photons.params.set("estimator", "photon-map");
   constexpr int kRenders = 256;
   double bias = 0.0, estimated = 0.0, squares = 0.0;
   for (int seed = 0; seed < kRenders; ++seed) {
     photons.seed = static_cast<std::uint64_t>(seed);
     const RenderResult result = renderReference(scene, camera, photons);
-    const double observed = test::meanOf(*result.image.find("specular_caustic")).y - truth;
-    const double estimate = test::meanOf(*result.image.find("specular_caustic_bias")).y;
+    const double observed = test::meanOf(*result.image.find(layer)).y - truth;
+    const double estimate = test::meanOf(*result.image.find(layer + "_bias")).y;
     bias += observed / kRenders, estimated += estimate / kRenders;
     squares += (estimate - observed) * (estimate - observed);
   }
@@ -194,6 +195,13 @@ TEST(KernelBias, IsWhatTheKernelTakesFromAPeak) {
   // The next order of the kernel's width, an eighth of the bias at most here, and three standard errors.
   EXPECT_NEAR(estimated, bias, std::abs(bias) / 8.0 + 3.0 * standard_error);
   EXPECT_LT(standard_error, std::abs(bias) / 12.0);
+}
+
+TEST(KernelBias, IsWhatKernelsTakeFromAPeakBehindGlass) {
+  expectBiasOfPeak("specular_caustic", vec3(0.7F, 0.9F, 0.0F), radians(12));
+}
+TEST(KernelBias, IsWhatKernelsTakeFromAPeakSeenDirectly) {
+  expectBiasOfPeak("caustic", vec3(0.25F, 0.09F, 0.0F), radians(30));
 }
 
 }  // namespace

@@ -137,9 +137,10 @@ class VcmEyePath {
     const float inverse_area = 1.0F / (kPi * techniques_.radius() * techniques_.radius());
     add(class_.with(EventClass::kDiffuse).with(EventClass::kSpecular), throughput_ * sum.radiance * inverse_area,
         sum.irradiance * inverse_area);
-    if (!film_.specular_caustic_bias.active() || class_.count() == 0) return;
+    FilmPlane& plane = class_.count() == 0 ? film_.caustic_bias : film_.specular_caustic_bias;
+    if (!plane.active()) return;
     const vec3 bias = 2.0F * throughput_ * inverse_area * (sum.radiance - 2.0F * sum.inner);
-    if (isFinite(bias)) film_.specular_caustic_bias.add(pixel_, bias);
+    if (isFinite(bias)) plane.add(pixel_, bias);
   }
 
   /// How the techniques that hand this vertex to the light's half compare with those that do not.
