@@ -21,11 +21,10 @@ layout(set = 0, binding = 3, r32i) uniform iimage2DArray flux_image;
 layout(set = 0, binding = 4, r32ui) writeonly uniform uimage2DArray tile_image;
 layout(scalar, set = 0, binding = 5) buffer Lost { int lost_steps[]; };
 layout(scalar, set = 0, binding = 6) buffer Lists {
-  uint whole_count;
-  uint torn_count;
-  uint large_count;
+  DepositListsHead lists;
   /// By number, from the first place on: cells between photons that took the same way, or squares of them (kIsSquare).
-  /// From place cellCount() backwards: those that are torn. From there on: pieces that are left to the last pass.
+  /// From place cellCount() backwards: photons beside cells that are torn. From there on: pieces that are left to the
+  /// last pass. Behind these: wholeCells.
   uint listed[];
 };
 layout(scalar, set = 0, binding = 7) readonly buffer Squares { uint squares[]; };  // PhotonBuffer::squares
@@ -228,8 +227,13 @@ bool mayBeSeen(CellOnPicture cell) {
          all(lessThan(cell.lower, vec2(push.width, push.height)));
 }
 
-/// Boxes of more texels are left to the second pass, where many threads share a cell.
+/// Boxes of more texels are left to the second pass, where many threads share a cell. What of them lies beside the
+/// picture counts too, so that cells across its border are deposited as their neighbours are.
 const float kLargeBox = 100.0;
+float texelsOfBox(CellOnPicture cell) {
+  vec2 size = cell.upper - cell.lower + 1.0;
+  return size.x * size.y;
+}
 
 /// What of a cell lies in which texel.
 struct Coverage {
@@ -249,12 +253,13 @@ struct Coverage {
   float point_share_2;
 };
 
-Coverage coverageOf(CellOnPicture cell) {
+/// @param size  of the picture, in texels
+Coverage coverageOf(CellOnPicture cell, vec2 size) {
   Coverage k;
   k.origin = floor(cell.lower);
   k.first = max(vec2(0.0), -k.origin);
   // A point on a texel's border is in the texel after it.
-  k.end = min(floor(cell.upper) + 1.0, vec2(push.width, push.height)) - k.origin;
+  k.end = min(floor(cell.upper) + 1.0, size) - k.origin;
   vec2 a = cell.corners[0] - k.origin, b = cell.corners[1] - k.origin, c = cell.corners[2] - k.origin,
        d = cell.corners[3] - k.origin;
   k.ab = makeEdge(a, b);
@@ -264,14 +269,16 @@ Coverage coverageOf(CellOnPicture cell) {
   k.da = makeEdge(d, a);
   float area_1 = 0.5 * crossOf(b - a, c - a), area_2 = 0.5 * crossOf(c - a, d - a);
   bool is_point_1 = abs(area_1) < kLeastArea, is_point_2 = abs(area_2) < kLeastArea;
-  k.point_1 = floor((a + b + c) / 3.0);
-  k.point_2 = floor((a + c + d) / 3.0);
+  k.point_1 = (a + b + c) / 3.0;
+  k.point_2 = (a + c + d) / 3.0;
   k.share_1 = is_point_1 ? 0.0 : 0.5 / area_1;
   k.share_2 = is_point_2 ? 0.0 : 0.5 / area_2;
   k.point_share_1 = is_point_1 ? 0.5 : 0.0;
   k.point_share_2 = is_point_2 ? 0.5 : 0.0;
   return k;
 }
+
+Coverage coverageOf(CellOnPicture cell) { return coverageOf(cell, vec2(push.width, push.height)); }
 
 /// Where a row of texels meets an edge: least and most x.
 vec2 spanInRow(vec2 span, Edge e, float y) {
@@ -291,8 +298,10 @@ vec2 rowOf(Coverage k, float y) {
   span = spanInRow(spanInRow(span, k.cd, y), k.da, y);
   // Of a folded cell both triangles lie on one side of the diagonal, which then bounds it.
   span = spanInRow(span, k.ca, y);
-  if (k.point_share_1 > 0.0 && k.point_1.y == y) span = vec2(min(span.x, k.point_1.x), max(span.y, k.point_1.x));
-  if (k.point_share_2 > 0.0 && k.point_2.y == y) span = vec2(min(span.x, k.point_2.x), max(span.y, k.point_2.x));
+  if (k.point_share_1 > 0.0 && floor(k.point_1.y) == y)
+    span = vec2(min(span.x, k.point_1.x), max(span.y, k.point_1.x));
+  if (k.point_share_2 > 0.0 && floor(k.point_2.y) == y)
+    span = vec2(min(span.x, k.point_2.x), max(span.y, k.point_2.x));
   return vec2(max(k.first.x, floor(span.x)), min(k.end.x, span.y + 1.0));
 }
 
@@ -306,8 +315,8 @@ float shareIn(Coverage k, vec2 at) {
   float diagonal = areaUnder(k.ca, at);
   float in_1 = areaUnder(k.ab, at) + areaUnder(k.bc, at) + diagonal;
   float in_2 = areaUnder(k.cd, at) + areaUnder(k.da, at) - diagonal;
-  return max(in_1 * k.share_1, 0.0) + max(in_2 * k.share_2, 0.0) + (at == k.point_1 ? k.point_share_1 : 0.0) +
-         (at == k.point_2 ? k.point_share_2 : 0.0);
+  return max(in_1 * k.share_1, 0.0) + max(in_2 * k.share_2, 0.0) + (at == floor(k.point_1) ? k.point_share_1 : 0.0) +
+         (at == floor(k.point_2) ? k.point_share_2 : 0.0);
 }
 
 Span spanOf(CellOnPicture cell, vec3 places[4], uint view) {
@@ -396,14 +405,29 @@ ivec2 firstOf(uint number) { return ivec2(number % cellsAcross(), number / cells
 
 /// Of what is listed: not a cell but the square that begins with it.
 const uint kIsSquare = 0x80000000u;
-/// Of a piece: where it says which part of the cell it is, all of it or the quarter of one corner.
+/// Of what else is listed: where it says which part of a cell or of a photon it is.
 const uint kPartShift = 28u;
+/// A cell; a photon; parts before are quarters of one (deposit_torn.glsl).
 const uint kWholePart = 4u;
+const uint kPhotonPart = 5u;
+
+uint numberIn(uint item) { return item & ((1u << kPartShift) - 1u); }
+uint saltOf(uint number, uint part) { return 8u * number + part; }
+
+/// Squares of cells, from the one before the first photons on: bits of those of its cells that are whole.
+uint placeOfSquare(uvec2 square) {
+  uint across = (push.grid_width + kDepositSquare - 1u) / kDepositSquare + 1u;
+  return 2u * cellCount() + square.y * across + square.x;
+}
+uint wholeCells(uvec2 square) { return listed[placeOfSquare(square)]; }
 
 /// Leaves a piece to the last pass. @return  false: there is no room
-bool leave(uint number, uint part) {
-  uint place = atomicAdd(large_count, 1u);
+/// @param texels  that it covers at the most
+bool leave(uint number, uint part, float texels) {
+  uint place = atomicAdd(lists.large_count, 1u);
   if (place >= cellCount()) return false;
+  float parts = texels * float(kLayerParts) / (float(push.width) * float(push.height));
+  atomicAdd(lists.large_parts, uint(toSteps(parts, mixBits(saltOf(number, part)))));
   listed[cellCount() + place] = number | part << kPartShift;
   return true;
 }

@@ -3,6 +3,7 @@
 
 #include <cstdint>
 
+#include "frame/deposit_levels.h"
 #include "frame/flux_map.h"
 #include "frame/photon_buffer.h"
 #include "frame/receiver_views.h"
@@ -46,10 +47,14 @@ class Deposit {
   /// @param splat_radius   texels at which a Gaussian of two standard deviations ends
   void record(gpu::CommandRecorder& recorder, const PhotonBuffer& photons, const DepositSurfaces& surfaces,
               float weight, float splat_radius, const gpu::Sampler& nearest, const FluxMap& map);
+  /// Records that nothing more is added to the map: only then all of its flux is in FluxMap::flux.
+  void finish(gpu::CommandRecorder& recorder, const FluxMap& map) const { levels_.finish(recorder, map); }
 
  private:
   gpu::Device& device_;
-  gpu::ComputePipeline sort_, cells_, edges_, large_;
+  std::uint32_t flux_layers_;  ///< of each view
+  DepositLevels levels_;
+  gpu::ComputePipeline sort_, cells_, torn_, edges_, large_, at_levels_, mixed_;
   gpu::Buffer lists_;  ///< cells that each pass leaves to the next
 };
 

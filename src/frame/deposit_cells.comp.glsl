@@ -29,7 +29,7 @@ void depositItem(uint item) {
   Light light = lightOf(cell);
   if (is_square) light.flux = fluxOfSquare(first);
   uint faced = kViewsShare ? viewFaced(cell.places, light.direction) : kViewCount;
-  if (kViewsShare && faced == kViewCount) addToLost(light, number);
+  if (kViewsShare && faced == kViewCount) addToLost(light, saltOf(number, kWholePart));
   // Nearly always one picture shows all of it.
   uint view = kViewCount;
   bool crosses = false;
@@ -48,13 +48,14 @@ void depositItem(uint item) {
   if (view == kViewCount) return;
   Coverage coverage = coverageOf(shown);
   // A square never lies on several pictures, or only with a texel or two.
-  if (!is_square && (crosses || countTexels(coverage) > kLargeBox) && leave(number, kWholePart)) return;
+  bool is_large = crosses || texelsOfBox(shown) > kLargeBox;
+  if (!is_square && is_large && leave(number, kWholePart, countTexels(coverage))) return;
   Span span = spanOf(shown, cell.places, view);
   // One loop, so that threads that go in step do not wait for each other's rows.
-  addRows(coverage, view, span, light, number);
+  addRows(coverage, view, span, light, saltOf(number, kWholePart));
 }
 
 void main() {
   uint threads = gl_NumWorkGroups.x * gl_WorkGroupSize.x;
-  for (uint i = gl_GlobalInvocationID.x; i < whole_count; i += threads) depositItem(listed[i]);
+  for (uint i = gl_GlobalInvocationID.x; i < lists.whole_count; i += threads) depositItem(listed[i]);
 }

@@ -1,10 +1,10 @@
-// Cells whose photons did not all take the same way: a thread for each corner. And splats. Large quarters are left to
-// deposit_large.comp.glsl.
+// Photons beside which some cells are torn: the quarters of their flux that no whole cell has, or all of it at once if
+// none has any. And splats. Large pieces are left to deposit_large.comp.glsl.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_scalar_block_layout : require
 #extension GL_EXT_control_flow_attributes : require
-#include "frame/deposit_quarters.glsl"
+#include "frame/deposit_torn.glsl"
 
 layout(local_size_x = 64) in;
 
@@ -41,9 +41,9 @@ void splat(vec3 place, Light light, uint salt) {
   }
 }
 
-/// The only picture that shows some of a quarter; kViewCount: none does. @return  false: there are several
+/// The only picture that shows some of a piece; kViewCount: none does. @return  false: there are several
 bool findView(Piece piece, out uint view, out CellOnPicture shown) {
-  uint faced = kViewsShare ? viewFaced(piece.places, piece.light.direction) : kViewCount;
+  uint faced = kViewsShare ? viewFaced(anchorsOf(piece), piece.light.direction) : kViewCount;
   view = kViewCount;
   bool is_one = true;
   for (uint v = kViewsShare ? faced : 0u; v < (kViewsShare ? min(faced + 1u, kViewCount) : kViewCount); ++v) {
@@ -56,24 +56,32 @@ bool findView(Piece piece, out uint view, out CellOnPicture shown) {
   return is_one;
 }
 
-void addQuarter(Piece piece, uint number, uint corner) {
-  uint view, salt = 4u * number + corner;
+void addPiece(Piece piece, uint number, uint part) {
+  uint view;
   CellOnPicture shown;
   bool is_one = findView(piece, view, shown);
-  if (kViewsShare && view == kViewCount) addToLost(piece.light, salt);
+  if (kViewsShare && view == kViewCount) addToLost(piece.light, saltOf(number, part));
   if (view == kViewCount) return;
   Coverage coverage = coverageOf(shown);
-  if ((!is_one || countTexels(coverage) > kLargeBox) && leave(number, corner)) return;
-  addRows(coverage, view, spanOf(shown, piece.places, view), piece.light, salt);
+  bool is_large = !is_one || texelsOfBox(shown) > kLargeBox;
+  if (is_large && leave(number, part, countTexels(coverage))) return;
+  addRows(coverage, view, spanOf(shown, anchorsOf(piece), view), piece.light, saltOf(number, part));
 }
 
 void main() {
   uint threads = gl_NumWorkGroups.x * gl_WorkGroupSize.x;
-  for (uint i = gl_GlobalInvocationID.x; i < 4u * torn_count; i += threads) {
-    uint number = listed[cellCount() - 1u - i / 4u], corner = i % 4u;
-    ivec2 first = firstOf(number);
-    Piece piece = quarterOf(first, fetchCell(first, 1), corner);
-    if (piece.is_cell) addQuarter(piece, number, corner);
-    if (piece.is_splat) splat(piece.places[0], piece.light, 4u * number + corner);
+  for (uint i = gl_GlobalInvocationID.x; i < lists.torn_count; i += threads) {
+    uint item = listed[cellCount() - 1u - i], number = numberIn(item);
+    TornPhoton torn = fetchTorn(firstOf(number));
+    uint quarters = item >> kPartShift, parts = quarters == kAllQuarters ? 1u << kPhotonPart : quarters;
+    if (torn.is_lone) {
+      Light light = Light(0.25 * float(bitCount(quarters)) * torn.photon.flux, torn.photon.direction);
+      splat(torn.photon.position, light, saltOf(number, kPhotonPart));
+      parts = 0u;
+    }
+    for (; parts != 0u; parts &= parts - 1u) {
+      uint part = uint(findLSB(parts));
+      addPiece(pieceOf(torn, part), number, part);
+    }
   }
 }

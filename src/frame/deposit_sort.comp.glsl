@@ -1,4 +1,4 @@
-// Which cells of a grid of photons have something to deposit, and how: one thread a square of them.
+// Which cells of a grid of photons are whole: one thread a square of them.
 //
 // A square whose photons were interpolated, and that covers next to nothing of the picture, is deposited as one cell:
 // at a focus many cells fall on each texel.
@@ -81,37 +81,39 @@ bool isWhole(Told a, Told b, Told c, Told d) {
 }
 
 /// Lists the cells of a square one by one: a bit each.
-void listCells(ivec2 first, uint whole, uint torn) {
-  uint next_whole = whole != 0u ? atomicAdd(whole_count, bitCount(whole)) : 0u;
-  uint next_torn = cellCount() - 1u - (torn != 0u ? atomicAdd(torn_count, bitCount(torn)) : 0u);
-  for (uint left = whole | torn; left != 0u; left &= left - 1u) {
+void listCells(ivec2 first, uint whole) {
+  uint next = whole != 0u ? atomicAdd(lists.whole_count, bitCount(whole)) : 0u;
+  for (uint left = whole; left != 0u; left &= left - 1u) {
     uint k = uint(findLSB(left));
-    uint number = numberOf(first + ivec2(k % kDepositSquare, k / kDepositSquare));
-    if ((whole >> k & 1u) != 0u) listed[next_whole++] = number;
-    else listed[next_torn--] = number;
+    listed[next++] = numberOf(first + ivec2(k % kDepositSquare, k / kDepositSquare));
   }
+}
+
+/// Which cells of a square are whole: a bit each.
+uint wholeIn(ivec2 first) {
+  uint whole = 0u;
+  ToldRow above = fetchTold(first);
+  for (int y = 0; y < kSide; ++y) {
+    ToldRow below = fetchTold(first + ivec2(0, y + 1));
+    [[unroll]] for (int x = 0; x < kSide; ++x)
+      if (isWhole(above.told[x], above.told[x + 1], below.told[x + 1], below.told[x]))
+        whole |= 1u << uint(y * kSide + x);
+    above = below;
+  }
+  return kMakesQuads ? whole : 0u;
 }
 
 void main() {
   // The first row and column of cells lie before the first photons.
   ivec2 first = kSide * (ivec2(gl_GlobalInvocationID.xy) - 1);
   if (first.x >= int(push.grid_width) || first.y >= int(push.grid_height)) return;
+  uint place = placeOfSquare(gl_GlobalInvocationID.xy);
   if (isOneCell(first)) {
-    listed[atomicAdd(whole_count, 1u)] = numberOf(first) | kIsSquare;
+    listed[place] = (1u << kDepositSquare * kDepositSquare) - 1u;
+    listed[atomicAdd(lists.whole_count, 1u)] = numberOf(first) | kIsSquare;
     return;
   }
-  uint whole = 0u, torn = 0u;
-  ToldRow above = fetchTold(first);
-  for (int y = 0; y < kSide; ++y) {
-    ToldRow below = fetchTold(first + ivec2(0, y + 1));
-    [[unroll]] for (int x = 0; x < kSide; ++x) {
-      Told a = above.told[x], b = above.told[x + 1], c = below.told[x + 1], d = below.told[x];
-      uint bit = 1u << uint(y * kSide + x);
-      bool is_whole = kMakesQuads && isWhole(a, b, c, d);
-      if (is_whole) whole |= bit;
-      else if (a.is_valid || b.is_valid || c.is_valid || d.is_valid) torn |= bit;
-    }
-    above = below;
-  }
-  listCells(first, whole, torn);
+  uint whole = wholeIn(first);
+  listed[place] = whole;
+  listCells(first, whole);
 }

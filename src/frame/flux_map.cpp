@@ -30,7 +30,8 @@ FluxMap::FluxMap(gpu::Device& device, std::uint32_t width, std::uint32_t height,
       tiles_(makeImage(device, VK_FORMAT_R32_UINT, gpu::groupsOf(width, kDepositTile),
                        gpu::groupsOf(height, kDepositTile), views, "tiles with flux")),
       lost_(device, kFluxChannels * sizeof(std::int32_t), VK_BUFFER_USAGE_STORAGE_BUFFER_BIT,
-            gpu::MemoryIntent::kDevice, "flux that is not deposited") {}
+            gpu::MemoryIntent::kDevice, "flux that is not deposited"),
+      levels_(device, width, height, views, channels_) {}
 
 void FluxMap::clear(gpu::CommandRecorder& recorder, float most) {
   quantum_ = std::max(most, 1e-37F) / kMostSteps;
@@ -42,6 +43,7 @@ void FluxMap::clear(gpu::CommandRecorder& recorder, float most) {
                   commands.clear(tiles_, {});
                   commands.fill(lost_, 0);
                 });
+  levels_.clear(recorder);
 }
 
 }  // namespace nephroid

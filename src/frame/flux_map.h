@@ -4,6 +4,7 @@
 #include <cstdint>
 
 #include "frame/deposit.shared.h"
+#include "frame/flux_levels.h"
 #include "gpu/commands.h"
 
 namespace nephroid {
@@ -37,12 +38,15 @@ class FluxMap {
   const gpu::Image& tiles() const { return tiles_; }
   /// Three whole numbers: red, green and blue of what could not be deposited, because another surface is seen there.
   const gpu::Buffer& lost() const { return lost_; }
+  /// Where large cells are deposited, until Deposit::finish adds them to `flux`.
+  const FluxLevels& levels() const { return levels_; }
 
  private:
   std::uint32_t channels_ = kFluxChannels;
   float quantum_ = 1.0F;
   gpu::Image flux_, tiles_;
   gpu::Buffer lost_;
+  FluxLevels levels_;
 };
 
 }  // namespace nephroid

@@ -84,6 +84,10 @@ void ReceiverMap::add(gpu::CommandRecorder& recorder, const PhotonBuffer& photon
                    settings_.splat_radius, *nearest_, map_);
 }
 
+void ReceiverMap::finish(gpu::CommandRecorder& recorder) const {
+  if (!views_.views.empty()) deposit_->finish(recorder, map_);
+}
+
 dvec3 ReceiverMap::readLost(gpu::Device& device) const {
   if (!surfaces_are_drawn_) return dvec3(0.0);
   const std::vector<std::int32_t> steps = gpu::readBackAs<std::int32_t>(device, map_.lost());

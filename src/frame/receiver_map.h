@@ -45,6 +45,8 @@ class ReceiverMap {
   void clear(gpu::CommandRecorder& recorder, float most);
   /// Records that the photons of a grid fall where they end. @param weight  times which their flux is added
   void add(gpu::CommandRecorder& recorder, const PhotonBuffer& photons, float weight);
+  /// Records that nothing more is added: to be called before anybody looks.
+  void finish(gpu::CommandRecorder& recorder) const;
 
   /// Of frame/receiver_map.glsl: descriptors from the binding on that it is given, what is bound to them, what is read.
   static constexpr std::uint32_t kBindings = 3;

@@ -272,7 +272,9 @@ void CausticMap::record(gpu::CommandRecorder& recorder, const RealtimeSample& sa
     sinks.push_back({add, add});
     emit(recorder, sample.index, point, sinks);
   }
+  if (into_receivers) receiver_map_->finish(recorder);
   if (!into_pixels) return;
+  deposit(1).finish(recorder, pixel_deposit_->map());
   smooth(recorder, pixel_deposit_->surfaces(sample), 1, pixel_deposit_->map());
   pixel_deposit_->finish(recorder, sample);
 }
@@ -306,7 +308,10 @@ void CausticMap::recordMaps(gpu::CommandRecorder& recorder, const RealtimeSample
   }
   emit(recorder, sample.index, point, sinks);
   for (const Map& map : maps) {
-    if (are_filled) smooth(recorder, map.surfaces, views, *map.flux);
+    if (are_filled) {
+      deposit(views).finish(recorder, *map.flux);
+      smooth(recorder, map.surfaces, views, *map.flux);
+    }
     lookUp(sample.surfaces.isForeign(), views)
         .record(recorder, sample, sample.weight * point.weight, map.surfaces, *map.flux);
   }
