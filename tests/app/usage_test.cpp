@@ -168,7 +168,7 @@ TEST(Completion, OffersCommandsOptionsChoicesAndScenes) {
   EXPECT_THAT(complete("nephroid render --technique "), ::testing::Contains("reference"));
   EXPECT_THAT(complete("nephroid render --tonemap f"), ::testing::ElementsAre("filmic"));
   EXPECT_THAT(complete("nephroid render --aov beauty,caus"),
-              ::testing::ElementsAre("beauty,caustic", "beauty,caustic_error"));
+              ::testing::ElementsAre("beauty,caustic", "beauty,caustic_error", "beauty,caustic_bias"));
   EXPECT_THAT(complete("nephroid scenes co"), ::testing::ElementsAre("cognac", "coffee"));
 }
 
