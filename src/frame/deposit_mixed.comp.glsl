@@ -10,7 +10,7 @@ layout(local_size_x = 64) in;
 
 /// Where large cells lie thicker than so many layers over the picture, some count by chance for all where they meet
 /// texels of levels that show several surfaces. Means are kept, and so is the time, however broken a picture is.
-const float kMostLayers = 16.0;
+const float kMostLayers = 64.0;
 
 /// In [0, 1), by where a cell lies: another one for each sample, for its photons are elsewhere.
 float chanceOf(vec3 place, uint salt) {

@@ -342,8 +342,8 @@ TEST_F(DepositTest, FarSpreadLightKeepsItsMeanOnBrokenSurfaces) {
   const double deviation = std::sqrt((squares - sum * sum) * kPictures / (kPictures - 1));
   EXPECT_NEAR(sum, 1.0, 3.0 * deviation / std::sqrt(double{kPictures}));
   // Some cells count for others, and not too few.
-  EXPECT_GT(deviation, 0.001);
-  EXPECT_LT(deviation, 0.2);
+  EXPECT_GT(deviation, 0.01);
+  EXPECT_LT(deviation, 0.1);
 }
 
 /// Cells ten texels wide and more, far beyond the picture's border, on a grid turned against the texels.
