@@ -14,8 +14,6 @@
 namespace nephroid {
 namespace {
 
-/// As in metrics: without it the darkest pixels would rule the figure (DESIGN, "Error figures").
-constexpr double kRelativeFloor = 0.01;
 /// Later batches from the eye are as long as this share of all passes: points of the sampler are well spread together,
 /// so that a mean over them errs less than the spread of short runs says.
 constexpr std::uint64_t kBatchShare = 4;

@@ -21,6 +21,10 @@
 
 namespace nephroid {
 
+/// Share of a picture's mean that relMSE adds to each pixel, as in metrics: without it the darkest would rule the
+/// figure (DESIGN, "Error figures").
+inline constexpr double kRelativeFloor = 0.01;
+
 /// Spread of the batches of one layer in one direction, per pixel and channel.
 class BatchSpread {
  public:

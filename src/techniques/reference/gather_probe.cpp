@@ -1,12 +1,9 @@
 #include "techniques/reference/gather_probe.h"
 
-#include <algorithm>
+#include "techniques/reference/error_estimate.h"
 
 namespace nephroid {
 namespace {
-
-/// As in metrics: without it the darkest pixels would rule the figure (DESIGN, "Error figures").
-constexpr double kRelativeFloor = 0.01;
 
 double squared(double x) { return x * x; }
 
