@@ -139,7 +139,8 @@ class RealtimeFrame {
   ViewRecord view_{};
   DrawSplit split_;
   gpu::Buffer camera_view_;
-  gpu::Image seen_, depth_, tint_, environment_, lamps_, nothing_;
+  gpu::Image seen_, depth_, tint_, environment_, nothing_;
+  gpu::Buffer lamps_;
   gpu::Sampler environment_sampler_;
   std::uint32_t lamp_count_ = 0;
   bool lamps_compiled_ = false;

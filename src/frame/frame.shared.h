@@ -9,8 +9,6 @@
 
 NEPHROID_NAMESPACE_BEGIN
 
-/// Texels in a row of a table: texel i lies at (i mod 2^12, i / 2^12).
-NEPHROID_CONST uint kTableShift = 12u;
 /// "Not there": of textures, attributes, nodes.
 NEPHROID_CONST uint kNowhere = 0xFFFFFFFFu;
 
@@ -188,14 +186,15 @@ NEPHROID_CONST uint kNodePassable = 0x80000000u;
 
 /// A box of the tree of triangles: see frame/triangle_tree.h.
 struct TreeNode {
-  vec3 lower;  // world
+  vec3 lower;  // world; of orders by octant, coordinates that fall along its directions times -1
   uint link;   // of a leaf: kTreeLeaf + first triangle · 4 + how many; else the node where a walk goes on that misses
-              // the box, their number at the end
+               // the box, their number at the end
   vec3 upper;
   uint pad;
 };
 
-/// A box on the grid of the tree, 16 bits a coordinate, rounded outwards.
+/// A box on the grid of the tree, 16 bits a coordinate, rounded outwards; of orders by octant, coordinates that fall
+/// are told from the grid's other end.
 struct CompactTreeNode {
   uint lower_xy;  // x low
   uint lower_z_upper_x;
@@ -204,6 +203,8 @@ struct CompactTreeNode {
 };
 
 NEPHROID_CONST uint kTreeLeaf = 0x80000000u;
+/// The last place of the grid.
+NEPHROID_CONST float kTreeGridEnd = 65535.0f;
 
 /// A triangle of the tree, world.
 struct TreeTriangle {

@@ -9,11 +9,11 @@
 #include "frame/surface.glsl"
 
 layout(local_size_x = 64) in;
-layout(set = 0, binding = 7) uniform usampler2D view_table;
+layout(set = 0, binding = 7) uniform usamplerBuffer view_table;
 // By light; in each, fine cells view by view, then coarse cells, then marks of the coarse cells in whose fine ones there
 // is something.
 layout(set = 0, binding = 8, r32ui) uniform uimage2DArray heads;
-layout(set = 0, binding = 9, rgba32ui) writeonly uniform uimage2D nodes;
+layout(set = 0, binding = 9, rgba32ui) writeonly uniform uimageBuffer nodes;
 layout(scalar, set = 0, binding = 10) buffer Counters { uint node_counts[]; };  // by light
 
 layout(push_constant, scalar) uniform Push {
@@ -50,9 +50,9 @@ void addNode(uint list, GridNode node) {
   if (place >= node_capacity) return;  // counted: the lists are built again with room for all
   place += first_node;
   node.next = imageAtomicExchange(heads, placeOfHead(list), place);
-  imageStore(nodes, texelOf(3u * place), uvec4(floatBitsToUint(node.a), node.next));
-  imageStore(nodes, texelOf(3u * place + 1u), uvec4(floatBitsToUint(node.b), node.instance));
-  imageStore(nodes, texelOf(3u * place + 2u), uvec4(floatBitsToUint(node.c), node.triangle));
+  imageStore(nodes, int(3u * place), uvec4(floatBitsToUint(node.a), node.next));
+  imageStore(nodes, int(3u * place + 1u), uvec4(floatBitsToUint(node.b), node.instance));
+  imageStore(nodes, int(3u * place + 2u), uvec4(floatBitsToUint(node.c), node.triangle));
 }
 
 struct ViewRows {
@@ -62,9 +62,9 @@ struct ViewRows {
 };
 
 ViewRows fetchRows(uint view) {
-  return ViewRows(uintBitsToFloat(texelFetch(view_table, texelOf(8u * view), 0)),
-                  uintBitsToFloat(texelFetch(view_table, texelOf(8u * view + 1u), 0)),
-                  uintBitsToFloat(texelFetch(view_table, texelOf(8u * view + 3u), 0)));
+  return ViewRows(uintBitsToFloat(texelFetch(view_table, int(8u * view))),
+                  uintBitsToFloat(texelFetch(view_table, int(8u * view + 1u))),
+                  uintBitsToFloat(texelFetch(view_table, int(8u * view + 3u))));
 }
 
 /// The part of a triangle before the light, projected: up to four corners, in cells.

@@ -61,7 +61,7 @@ LightGrids::LightGrids(gpu::Device& device, const SceneData& scene, const SceneB
       grid_size_(chooseGridSize(grid_size, light_views_->count())),
       pipeline_(device,
                 {.shader = shaders::light_grid_comp,
-                 .bindings = SceneBuffers::bindings({kTexture, kStorage, kStorage, kTable}),
+                 .bindings = SceneBuffers::bindings({kTexels, kStorage, kStoredTexels, kTable}),
                  .push_bytes = sizeof(GridPush),
                  .constants = buffers.traits().constants()},
                 "light grid") {
@@ -108,7 +108,7 @@ void LightGrids::allocate() {
     nodes += light.node_capacity;
     light.built = false;
   }
-  nodes_ = gpu::Image();
+  nodes_ = gpu::Buffer();
   nodes_ = makeWrittenTable(device_, nodes * (sizeof(GridNode) / 16), "nodes of lights' grids");
 }
 
@@ -173,8 +173,8 @@ void LightGrids::build(gpu::CommandRecorder& recorder, std::uint32_t index) {
                                            Use(nodes_, Access::kComputeWrite), Use(counters_, Access::kComputeWrite)});
   recorder.pass("light grid", uses, [&](PassCommands& commands) {
     commands.bind(pipeline_);
-    commands.bindResources(buffers_.bound(
-        {Bound(7, view_table_, buffers_.sampler()), Bound(8, heads_), Bound(9, nodes_), Bound(10, counters_)}));
+    commands.bindResources(
+        buffers_.bound({Bound(7, view_table_), Bound(8, heads_), Bound(9, nodes_), Bound(10, counters_)}));
     for (const SceneBuffers::Draw& draw : buffers_.draws()) {
       std::uint32_t view_mask = 0;
       for (std::size_t v = 0; v < light.views.size(); ++v)
@@ -205,11 +205,8 @@ bool LightGrids::checkCapacity() {
 }
 
 std::vector<gpu::Bound> LightGrids::bound(std::uint32_t first) const {
-  const gpu::Sampler& sampler = buffers_.sampler();
-  return {{first, light_table_, sampler},
-          {first + 1, heads_, sampler},
-          {first + 2, nodes_, sampler},
-          {first + 3, lights_buffer_}};
+  return {
+      {first, light_table_}, {first + 1, heads_, buffers_.sampler()}, {first + 2, nodes_}, {first + 3, lights_buffer_}};
 }
 
 std::vector<gpu::Use> LightGrids::uses() const {

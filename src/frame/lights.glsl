@@ -12,9 +12,9 @@
 #include "core/optics/lights.shared.h"
 #include "frame/cube.shared.h"
 
-layout(set = 0, binding = NEPHROID_LIGHT_BINDINGS) uniform usampler2D light_table;
+layout(set = 0, binding = NEPHROID_LIGHT_BINDINGS) uniform usamplerBuffer light_table;
 layout(set = 0, binding = NEPHROID_LIGHT_BINDINGS + 1) uniform usampler2DArray grid_heads;  // a layer a light
-layout(set = 0, binding = NEPHROID_LIGHT_BINDINGS + 2) uniform usampler2D grid_nodes;
+layout(set = 0, binding = NEPHROID_LIGHT_BINDINGS + 2) uniform usamplerBuffer grid_nodes;
 // For places in the shader that ask for one light whose index is a constant: then each word is read once, and not by
 // every thread.
 layout(scalar, set = 0, binding = NEPHROID_LIGHT_BINDINGS + 3) readonly buffer Lights { LightRecord lights[]; };
@@ -29,14 +29,14 @@ layout(constant_id = 16) const bool kLightsHaveSurfaces = true;
 
 LightRecord fetchLight(uint i) {
   uvec4 zero = uvec4(0u), normal = zero;
-  uvec4 position = texelFetch(light_table, texelOf(7u * i), 0);
-  vec4 direction = uintBitsToFloat(texelFetch(light_table, texelOf(7u * i + 1u), 0));
-  vec4 value = uintBitsToFloat(texelFetch(light_table, texelOf(7u * i + 2u), 0));
-  if (kLightsHaveSurfaces) normal = texelFetch(light_table, texelOf(7u * i + 3u), 0);
-  uvec4 grid = texelFetch(light_table, texelOf(7u * i + 4u), 0), row_x = zero, row_y = zero;
+  uvec4 position = texelFetch(light_table, int(7u * i));
+  vec4 direction = uintBitsToFloat(texelFetch(light_table, int(7u * i + 1u)));
+  vec4 value = uintBitsToFloat(texelFetch(light_table, int(7u * i + 2u)));
+  if (kLightsHaveSurfaces) normal = texelFetch(light_table, int(7u * i + 3u));
+  uvec4 grid = texelFetch(light_table, int(7u * i + 4u)), row_x = zero, row_y = zero;
   if (kLightsHaveDirectionals) {
-    row_x = texelFetch(light_table, texelOf(7u * i + 5u), 0);
-    row_y = texelFetch(light_table, texelOf(7u * i + 6u), 0);
+    row_x = texelFetch(light_table, int(7u * i + 5u));
+    row_y = texelFetch(light_table, int(7u * i + 6u));
   }
   return LightRecord(uintBitsToFloat(position.xyz), position.w, direction.xyz, direction.w, value.xyz, value.w,
                      uintBitsToFloat(normal.xyz), normal.w, grid.x, grid.y, grid.z, grid.w, uintBitsToFloat(row_x),
@@ -121,9 +121,9 @@ ivec3 headOf(uint list, uint light) {
 uint fetchHead(uint list, uint light_index) { return texelFetch(grid_heads, headOf(list, light_index), 0).x; }
 
 GridNode fetchNode(uint i) {
-  uvec4 a = texelFetch(grid_nodes, texelOf(3u * i), 0);
-  uvec4 b = texelFetch(grid_nodes, texelOf(3u * i + 1u), 0);
-  uvec4 c = texelFetch(grid_nodes, texelOf(3u * i + 2u), 0);
+  uvec4 a = texelFetch(grid_nodes, int(3u * i));
+  uvec4 b = texelFetch(grid_nodes, int(3u * i + 1u));
+  uvec4 c = texelFetch(grid_nodes, int(3u * i + 2u));
   return GridNode(uintBitsToFloat(a.xyz), a.w, uintBitsToFloat(b.xyz), b.w, uintBitsToFloat(c.xyz), c.w);
 }
 

@@ -19,9 +19,9 @@ int wrapTexel(int i, int size, uint mode) {
 vec4 fetchTexel(TextureRecord t, int x, int y, bool srgb) {
   x = wrapTexel(x, int(t.width), (t.flags >> kTextureWrapU) & 3u);
   y = wrapTexel(y, int(t.height), (t.flags >> kTextureWrapV) & 3u);
-  ivec2 place = texelOf(t.first_texel + uint(y) * t.width + uint(x));
-  if ((t.flags & kTextureIsFloat) != 0u) return texelFetch(float_texels, place, 0);
-  vec4 raw = texelFetch(byte_texels, place, 0);
+  int place = int(t.first_texel + uint(y) * t.width + uint(x));
+  if ((t.flags & kTextureIsFloat) != 0u) return texelFetch(float_texels, place);
+  vec4 raw = texelFetch(byte_texels, place);
   if (!srgb) return raw;
   return vec4(linearFromSrgb(raw.x), linearFromSrgb(raw.y), linearFromSrgb(raw.z), raw.w);
 }

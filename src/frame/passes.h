@@ -13,8 +13,9 @@ using gpu::PassCommands;
 using gpu::Use;
 
 inline constexpr VkDescriptorType kTable = VK_DESCRIPTOR_TYPE_STORAGE_BUFFER;
-/// A buffer of texels of four words.
+/// A buffer of texels, to fetch them from or to store them to.
 inline constexpr VkDescriptorType kTexels = VK_DESCRIPTOR_TYPE_UNIFORM_TEXEL_BUFFER;
+inline constexpr VkDescriptorType kStoredTexels = VK_DESCRIPTOR_TYPE_STORAGE_TEXEL_BUFFER;
 inline constexpr VkDescriptorType kTexture = VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER;
 inline constexpr VkDescriptorType kStorage = VK_DESCRIPTOR_TYPE_STORAGE_IMAGE;
 

@@ -10,6 +10,7 @@
 #include "core/optics/photon.shared.h"
 #include "core/optics/surface.shared.h"
 #include "core/parallel.h"
+#include "frame/passes.h"
 #include "frame/table.h"
 #include "nephroid/error.h"
 #include "scene/mesh_topology.h"
@@ -344,15 +345,14 @@ void SceneBuffers::uploadMaterials(gpu::Device& device, gpu::CommandRecorder& re
 
 std::vector<gpu::Binding> SceneBuffers::bindings(std::initializer_list<VkDescriptorType> types) {
   std::vector<gpu::Binding> all;
-  for (std::uint32_t i = 0; i < kBindings; ++i) all.push_back({i, VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER});
+  for (std::uint32_t i = 0; i < kBindings; ++i) all.push_back({i, kTexels});
   for (const VkDescriptorType type : types) all.push_back({static_cast<std::uint32_t>(all.size()), type});
   return all;
 }
 
 std::vector<gpu::Bound> SceneBuffers::bound(std::initializer_list<gpu::Bound> more) const {
-  std::vector<gpu::Bound> all{{0, triangles_, sampler_},   {1, instances_, sampler_}, {2, materials_, sampler_},
-                              {3, attributes_, sampler_},  {4, textures_, sampler_},  {5, byte_texels_, sampler_},
-                              {6, float_texels_, sampler_}};
+  std::vector<gpu::Bound> all{{0, triangles_}, {1, instances_},   {2, materials_},   {3, attributes_},
+                              {4, textures_},  {5, byte_texels_}, {6, float_texels_}};
   all.insert(all.end(), more);
   return all;
 }

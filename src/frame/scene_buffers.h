@@ -64,7 +64,7 @@ class SceneBuffers {
   const gpu::Buffer& indices() const { return indices_; }
   /// Of each triangle those of its mesh beyond its edges (findNeighbours), and nothing: a table for those who walk on
   /// surfaces. Empty in scenes without generators.
-  const gpu::Image& neighbours() const { return neighbours_; }
+  const gpu::Buffer& neighbours() const { return neighbours_; }
   /// `kBindings` of them and, behind, of `types`.
   static std::vector<gpu::Binding> bindings(std::initializer_list<VkDescriptorType> types);
   /// What is bound to them.
@@ -105,8 +105,8 @@ class SceneBuffers {
   std::vector<MeshPlace> places_;        ///< by mesh
   std::vector<Classification> classes_;  ///< by material
   gpu::Buffer positions_, indices_;
-  gpu::Image neighbours_;
-  gpu::Image triangles_, instances_, materials_, attributes_, textures_, byte_texels_, float_texels_;
+  gpu::Buffer neighbours_;
+  gpu::Buffer triangles_, instances_, materials_, attributes_, textures_, byte_texels_, float_texels_;
   std::vector<Draw> draws_;
   SceneTraits traits_;
 };

@@ -21,8 +21,8 @@ gpu::ComputePipeline makePass(gpu::Device& device, gpu::Spirv shader, std::vecto
   constants.insert(constants.end(), lights.begin(), lights.end());
   return {device,
           {.shader = shader,
-           .bindings = SceneBuffers::bindings({kTexture, kTexture, kTexture, kTable, kTable, kTexture, kTexture,
-                                               kTexture, kTexture, kStorage, kStorage, kTable}),
+           .bindings = SceneBuffers::bindings({kTexels, kTexture, kTexels, kTable, kTable, kTexture, kTexture, kTexels,
+                                               kTexture, kStorage, kStorage, kTable}),
            .push_bytes = sizeof(SamplePush),
            .constants = std::move(constants)},
           name};
@@ -80,7 +80,7 @@ std::vector<gpu::Use> ShadePass::uses() const {
 std::vector<gpu::Bound> ShadePass::bound() const {
   const gpu::Sampler& nearest = buffers_.sampler();
   std::vector<Bound> bound = buffers_.bound({Bound(11, inputs_.camera_view), Bound(12, inputs_.seen, nearest),
-                                             Bound(13, inputs_.tint, nearest), Bound(14, inputs_.lamps, nearest),
+                                             Bound(13, inputs_.tint, nearest), Bound(14, inputs_.lamps),
                                              Bound(15, inputs_.environment, inputs_.environment_sampler),
                                              Bound(16, direct_), Bound(17, emission_), Bound(18, lists_)});
   const std::vector<Bound> of_lights = inputs_.grids.bound(SceneBuffers::kBindings);

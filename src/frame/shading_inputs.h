@@ -9,7 +9,9 @@ namespace nephroid {
 /// All must outlive the pass.
 struct ShadingInputs {
   const gpu::Buffer& camera_view;
-  const gpu::Image &seen, &tint, &lamps, &environment;
+  const gpu::Image &seen, &tint;
+  const gpu::Buffer& lamps;
+  const gpu::Image& environment;
   const gpu::Sampler& environment_sampler;
   const LightGrids& grids;
 };

@@ -8,7 +8,7 @@
 #include "frame/ray.glsl"
 #include "core/optics/lights.shared.h"
 
-layout(set = 0, binding = NEPHROID_SKY_BINDINGS) uniform usampler2D lamp_table;
+layout(set = 0, binding = NEPHROID_SKY_BINDINGS) uniform usamplerBuffer lamp_table;
 layout(set = 0, binding = NEPHROID_SKY_BINDINGS + 1) uniform sampler2D environment;
 
 layout(constant_id = 5) const bool kSceneHasEnvironment = true;
@@ -26,10 +26,10 @@ vec3 environmentFrom(vec3 dir) {
 }
 
 LampRecord fetchLamp(uint i) {
-  vec4 position = uintBitsToFloat(texelFetch(lamp_table, texelOf(4u * i), 0));
-  vec4 radiance = uintBitsToFloat(texelFetch(lamp_table, texelOf(4u * i + 1u), 0));
-  vec4 direction = uintBitsToFloat(texelFetch(lamp_table, texelOf(4u * i + 2u), 0));
-  uvec4 rest = texelFetch(lamp_table, texelOf(4u * i + 3u), 0);
+  vec4 position = uintBitsToFloat(texelFetch(lamp_table, int(4u * i)));
+  vec4 radiance = uintBitsToFloat(texelFetch(lamp_table, int(4u * i + 1u)));
+  vec4 direction = uintBitsToFloat(texelFetch(lamp_table, int(4u * i + 2u)));
+  uvec4 rest = texelFetch(lamp_table, int(4u * i + 3u));
   return LampRecord(position.xyz, position.w, radiance.xyz, radiance.w, direction.xyz, direction.w,
                     uintBitsToFloat(rest.x), rest.y, 0u, 0u);
 }

@@ -34,7 +34,7 @@
 layout(local_size_x = 64) in;
 layout(scalar, set = 0, binding = 11) readonly buffer Views { ViewRecord views[]; };
 layout(set = 0, binding = 12, rgba32ui) writeonly uniform uimage2D end_image;
-layout(set = 0, binding = 13) uniform sampler2D band_table;  // wavelength in nm, and weight times their count
+layout(set = 0, binding = 13) uniform samplerBuffer band_table;  // wavelength in nm, and weight times their count
 layout(set = 0, binding = 16, rgba32f) uniform image2D specular_image;  // sum over samples, W/m²/sr
 
 const uint kShow = 0u;
@@ -76,7 +76,7 @@ const Receiver kNoReceiver = Receiver(false, 0u, 0u, 0.0, 0.0, vec3(0.0), 1.0, v
 /// Each pixel goes through all bands in as many frames, in an order that spreads them.
 void drawWavelength(inout Path path, uvec2 pixel) {
   uint first = hashChain(pixel.x + (pixel.y << 16), 0x57u);
-  vec4 band = texelFetch(band_table, texelOf((first + push.frame * 39u) % band_count), 0);
+  vec4 band = texelFetch(band_table, int((first + push.frame * 39u) % band_count));
   path.wavelength_nm = band.x;
   path.throughput *= band.yzw;
 }

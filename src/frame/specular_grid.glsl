@@ -103,8 +103,8 @@ uint listedThreads() { return gl_NumWorkGroups.x * kListGroup; }
 
 /// Does an instance have a lobe of class S?
 bool isSpecular(uint instance) {
-  uint material = texelFetch(instance_table, texelOf(5u * instance + 3u), 0).y;
-  return (texelFetch(material_table, texelOf(9u * material + 3u), 0).w & kMaterialIsSpecular) != 0u;
+  uint material = texelFetch(instance_table, int(5u * instance + 3u)).y;
+  return (texelFetch(material_table, int(9u * material + 3u)).w & kMaterialIsSpecular) != 0u;
 }
 
 #endif

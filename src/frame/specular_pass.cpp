@@ -24,7 +24,7 @@ struct ListHead {
 };
 
 /// Wavelength and weight times the number of bands.
-gpu::Image makeBandTable(gpu::Device& device, gpu::CommandRecorder& recorder) {
+gpu::Buffer makeBandTable(gpu::Device& device, gpu::CommandRecorder& recorder) {
   std::vector<vec4> texels;
   for (const Band& band : makeBands(kBandCount))
     texels.emplace_back(band.wavelength_nm, band.weight * static_cast<float>(kBandCount));
@@ -91,8 +91,8 @@ SpecularPass::SpecularPass(gpu::Device& device, gpu::CommandRecorder& recorder, 
   };
   const auto follow = [&](std::uint32_t task, const char* name) {
     return make(shaders::specular_comp,
-                {kTexture, kTexture, kTexture, kTable, kTable, kStorage, kTexture, kTexture, kTexture, kStorage,
-                 kTexture, kTexture, kTexture, kTable},
+                {kTexels, kTexture, kTexels, kTable, kTable, kStorage, kTexels, kTexels, kTexture, kStorage, kTexels,
+                 kTexels, kTexture, kTable},
                 join(join(join(traits.pathConstants(), of_ends), inputs.tree.constants()), {{kTaskConstant, task}}),
                 name, true);
   };
@@ -104,10 +104,9 @@ SpecularPass::SpecularPass(gpu::Device& device, gpu::CommandRecorder& recorder, 
     follow_most_ = follow(kFollowMost, "specular points");
     agreement_ = make(shaders::specular_agreement_comp, {kTexture, kTable, kTexture, kStorage}, traits.pathConstants(),
                       "specular agreement");
-    lit_ =
-        make(shaders::specular_lit_comp,
-             {kTexture, kTexture, kTexture, kTable, kTexture, kTable, kTexture, kTexture, kTexture, kStorage, kTexture},
-             join(traits.constants(), of_ends), "specular lit", true);
+    lit_ = make(shaders::specular_lit_comp,
+                {kTexels, kTexture, kTexels, kTable, kTexture, kTable, kTexture, kTexels, kTexture, kStorage, kTexture},
+                join(traits.constants(), of_ends), "specular lit", true);
   }
   fitPicture(device);
 }
@@ -226,10 +225,9 @@ void SpecularPass::recordLit(gpu::CommandRecorder& recorder, Push push) {
   const std::vector<Use> of_lights = grids.uses();
   uses.insert(uses.end(), of_lights.begin(), of_lights.end());
   const gpu::Sampler& nearest = buffers_.sampler();
-  std::vector<Bound> bound =
-      buffers_.bound({Bound(11, inputs_.seen, nearest), Bound(12, lists_), Bound(13, ends_, nearest),
-                      Bound(14, inputs_.lamps, nearest), Bound(15, inputs_.environment, inputs_.environment_sampler),
-                      Bound(16, sum_), Bound(17, bends_, nearest)});
+  std::vector<Bound> bound = buffers_.bound(
+      {Bound(11, inputs_.seen, nearest), Bound(12, lists_), Bound(13, ends_, nearest), Bound(14, inputs_.lamps),
+       Bound(15, inputs_.environment, inputs_.environment_sampler), Bound(16, sum_), Bound(17, bends_, nearest)});
   appendReceivers(18, bound, uses);
   const std::vector<Bound> of_grids = grids.bound(SceneBuffers::kBindings);
   bound.insert(bound.end(), of_grids.begin(), of_grids.end());
@@ -258,10 +256,9 @@ void SpecularPass::recordFollowing(gpu::CommandRecorder& recorder, const gpu::Co
   uses.insert(uses.end(), of_lights.begin(), of_lights.end());
   const gpu::Sampler& nearest = buffers_.sampler();
   std::vector<Bound> bound = buffers_.bound(
-      {Bound(11, inputs_.camera_view), Bound(12, ends_), Bound(13, bands_, nearest), Bound(14, inputs_.lamps, nearest),
-       Bound(15, inputs_.environment, inputs_.environment_sampler), Bound(16, sum_),
-       Bound(17, inputs_.tree.nodes(), nearest), Bound(18, inputs_.tree.triangles(), nearest),
-       Bound(19, inputs_.seen, nearest), Bound(20, lists_)});
+      {Bound(11, inputs_.camera_view), Bound(12, ends_), Bound(13, bands_), Bound(14, inputs_.lamps),
+       Bound(15, inputs_.environment, inputs_.environment_sampler), Bound(16, sum_), Bound(17, inputs_.tree.nodes()),
+       Bound(18, inputs_.tree.triangles()), Bound(19, inputs_.seen, nearest), Bound(20, lists_)});
   appendReceivers(21, bound, uses);
   const std::vector<Bound> of_grids = grids.bound(SceneBuffers::kBindings);
   bound.insert(bound.end(), of_grids.begin(), of_grids.end());

@@ -5,7 +5,6 @@ layout(push_constant, scalar) uniform Push {
   SamplePush push;
   uint max_events;
   uint tree_nodes;  // TriangleTree::Walk
-  uint tree_orders;
   vec3 tree_grid_lower;
   float tree_grid_scale;
   uint band_count;

@@ -5,13 +5,13 @@
 #include "frame/frame.shared.h"
 #include "core/optics/photon.shared.h"
 
-layout(set = 0, binding = 0) uniform usampler2D triangle_table;
-layout(set = 0, binding = 1) uniform usampler2D instance_table;
-layout(set = 0, binding = 2) uniform usampler2D material_table;
-layout(set = 0, binding = 3) uniform usampler2D attribute_table;
-layout(set = 0, binding = 4) uniform usampler2D texture_table;
-layout(set = 0, binding = 5) uniform sampler2D byte_texels;
-layout(set = 0, binding = 6) uniform sampler2D float_texels;
+layout(set = 0, binding = 0) uniform usamplerBuffer triangle_table;
+layout(set = 0, binding = 1) uniform usamplerBuffer instance_table;
+layout(set = 0, binding = 2) uniform usamplerBuffer material_table;
+layout(set = 0, binding = 3) uniform usamplerBuffer attribute_table;
+layout(set = 0, binding = 4) uniform usamplerBuffer texture_table;
+layout(set = 0, binding = 5) uniform samplerBuffer byte_texels;
+layout(set = 0, binding = 6) uniform samplerBuffer float_texels;
 
 // What no material of the scene has is not compiled: a device that runs all branches for all threads pays for each.
 layout(constant_id = 0) const bool kSceneHasMetal = true;
@@ -20,20 +20,18 @@ layout(constant_id = 2) const bool kSceneHasConductors = true;
 layout(constant_id = 3) const bool kSceneHasTextures = true;   // or colours of vertices
 layout(constant_id = 4) const bool kSceneHasPassable = true;   // panes, cut-outs
 
-ivec2 texelOf(uint i) { return ivec2(i & ((1u << kTableShift) - 1u), i >> kTableShift); }
-
 InstanceRecord fetchInstance(uint i) {
   InstanceRecord r;
-  r.row_x = uintBitsToFloat(texelFetch(instance_table, texelOf(5u * i), 0));
-  r.row_y = uintBitsToFloat(texelFetch(instance_table, texelOf(5u * i + 1u), 0));
-  r.row_z = uintBitsToFloat(texelFetch(instance_table, texelOf(5u * i + 2u), 0));
-  uvec4 w = texelFetch(instance_table, texelOf(5u * i + 3u), 0);
+  r.row_x = uintBitsToFloat(texelFetch(instance_table, int(5u * i)));
+  r.row_y = uintBitsToFloat(texelFetch(instance_table, int(5u * i + 1u)));
+  r.row_z = uintBitsToFloat(texelFetch(instance_table, int(5u * i + 2u)));
+  uvec4 w = texelFetch(instance_table, int(5u * i + 3u));
   r.first_triangle = w.x;
   r.material = w.y;
   r.flags = w.z;
   r.solid = w.w;
   uvec4 attributes = uvec4(kNowhere);
-  if (kSceneHasTextures) attributes = texelFetch(instance_table, texelOf(5u * i + 4u), 0);
+  if (kSceneHasTextures) attributes = texelFetch(instance_table, int(5u * i + 4u));
   r.texcoords_0 = attributes.x;
   r.texcoords_1 = attributes.y;
   r.colors = attributes.z;
@@ -43,37 +41,37 @@ InstanceRecord fetchInstance(uint i) {
 
 /// @param i  of all triangles of all meshes
 TriangleRecord fetchTriangle(uint i) {
-  uvec4 a = texelFetch(triangle_table, texelOf(3u * i), 0);
-  uvec4 b = texelFetch(triangle_table, texelOf(3u * i + 1u), 0);
-  uvec4 c = texelFetch(triangle_table, texelOf(3u * i + 2u), 0);
+  uvec4 a = texelFetch(triangle_table, int(3u * i));
+  uvec4 b = texelFetch(triangle_table, int(3u * i + 1u));
+  uvec4 c = texelFetch(triangle_table, int(3u * i + 2u));
   return TriangleRecord(uintBitsToFloat(a.xyz), a.w, uintBitsToFloat(b.xyz), b.w, uintBitsToFloat(c.xyz), c.w);
 }
 
 MaterialRecord fetchMaterial(uint i) {
   MaterialRecord m;
-  m.base = uintBitsToFloat(texelFetch(material_table, texelOf(9u * i), 0));
-  vec4 emission = uintBitsToFloat(texelFetch(material_table, texelOf(9u * i + 1u), 0));
+  m.base = uintBitsToFloat(texelFetch(material_table, int(9u * i)));
+  vec4 emission = uintBitsToFloat(texelFetch(material_table, int(9u * i + 1u)));
   m.emission = emission.xyz;
   m.metallic = emission.w;
-  vec4 tint = uintBitsToFloat(texelFetch(material_table, texelOf(9u * i + 2u), 0));
+  vec4 tint = uintBitsToFloat(texelFetch(material_table, int(9u * i + 2u)));
   m.specular_tint = tint.xyz;
   m.roughness = tint.w;
-  uvec4 transmission = texelFetch(material_table, texelOf(9u * i + 3u), 0);
+  uvec4 transmission = texelFetch(material_table, int(9u * i + 3u));
   m.transmission = uintBitsToFloat(transmission.x);
   m.ior = uintBitsToFloat(transmission.y);
   m.average_fresnel = uintBitsToFloat(transmission.z);
   m.flags = transmission.w;
   vec4 ior = vec4(0.0), k = vec4(0.0);
-  if (kSceneHasConductors || kSceneHasPassable) ior = uintBitsToFloat(texelFetch(material_table, texelOf(9u * i + 4u), 0));
-  if (kSceneHasConductors || kSceneHasTextures) k = uintBitsToFloat(texelFetch(material_table, texelOf(9u * i + 5u), 0));
+  if (kSceneHasConductors || kSceneHasPassable) ior = uintBitsToFloat(texelFetch(material_table, int(9u * i + 4u)));
+  if (kSceneHasConductors || kSceneHasTextures) k = uintBitsToFloat(texelFetch(material_table, int(9u * i + 5u)));
   m.conductor_ior = ior.xyz;
   m.alpha_cutoff = ior.w;
   m.conductor_k = k.xyz;
   m.normal_scale = k.w;
   uvec4 first = uvec4(kNowhere), second = uvec4(kNowhere);
   if (kSceneHasTextures) {
-    first = texelFetch(material_table, texelOf(9u * i + 6u), 0);
-    second = texelFetch(material_table, texelOf(9u * i + 7u), 0);
+    first = texelFetch(material_table, int(9u * i + 6u));
+    second = texelFetch(material_table, int(9u * i + 7u));
   }
   m.base_texture = first.x;
   m.metallic_roughness_texture = first.y;
@@ -100,24 +98,24 @@ struct Medium {
 /// @param material  kNowhere: vacuum
 Medium fetchMedium(uint material) {
   if (material == kNowhere) return Medium(1.0, 0.0, vec3(0.0), 0);
-  vec4 absorbs = uintBitsToFloat(texelFetch(material_table, texelOf(9u * material + 8u), 0));
-  return Medium(uintBitsToFloat(texelFetch(material_table, texelOf(9u * material + 3u), 0).y), absorbs.w, absorbs.xyz,
-                int(texelFetch(material_table, texelOf(9u * material + 7u), 0).w));
+  vec4 absorbs = uintBitsToFloat(texelFetch(material_table, int(9u * material + 8u)));
+  return Medium(uintBitsToFloat(texelFetch(material_table, int(9u * material + 3u)).y), absorbs.w, absorbs.xyz,
+                int(texelFetch(material_table, int(9u * material + 7u)).w));
 }
 
 TextureRecord fetchTexture(uint i) {
   TextureRecord t;
-  uvec4 w = texelFetch(texture_table, texelOf(3u * i), 0);
+  uvec4 w = texelFetch(texture_table, int(3u * i));
   t.first_texel = w.x;
   t.width = w.y;
   t.height = w.z;
   t.flags = w.w;
-  t.row_u = uintBitsToFloat(texelFetch(texture_table, texelOf(3u * i + 1u), 0).xyz);
-  t.row_v = uintBitsToFloat(texelFetch(texture_table, texelOf(3u * i + 2u), 0).xyz);
+  t.row_u = uintBitsToFloat(texelFetch(texture_table, int(3u * i + 1u)).xyz);
+  t.row_v = uintBitsToFloat(texelFetch(texture_table, int(3u * i + 2u)).xyz);
   return t;
 }
 
 /// Attribute texel, as floats.
-vec4 fetchAttribute(uint i) { return uintBitsToFloat(texelFetch(attribute_table, texelOf(i), 0)); }
+vec4 fetchAttribute(uint i) { return uintBitsToFloat(texelFetch(attribute_table, int(i))); }
 
 #endif

@@ -12,7 +12,7 @@ namespace nephroid {
 namespace {
 
 /// Of frame/triangle_tree.glsl.
-constexpr std::uint32_t kCompactConstant = 20;
+constexpr std::uint32_t kCompactConstant = 20, kOrdersConstant = 25;
 /// What a shader's turn of triangle_tree.glsl takes for each.
 constexpr BoxTreeCosts kCosts{.max_leaf_size = 3, .box = 1.0F, .primitive = 1.0F};
 /// More triangles than this have one order only, for the sake of memory.
@@ -23,6 +23,8 @@ constexpr float kBoxMargin = 1.0F / 1048576.0F;
 constexpr float kGridCells = 65'000.0F;
 /// On the grid, a shader's rounding is less than this many cells.
 constexpr float kGridMargin = 0.25F;
+/// With what chance a ray meets the boxes that a walk asks for, at the most.
+constexpr double kMostMet = 0.5;
 /// Areas of boxes on the grid may be so many times those of the true ones, in the mean over all: as many more are met.
 constexpr double kMaxGrowth = 1.25;
 
@@ -72,7 +74,7 @@ struct Grid {
     const vec3 extent = scene.extent();
     const float longest = std::max({extent.x, extent.y, extent.z});
     if (longest > 0.0F) scale = kGridCells / longest;
-    lower = scene.lower - 0.5F * (65'535.0F - kGridCells) / scale;
+    lower = scene.lower - 0.5F * (kTreeGridEnd - kGridCells) / scale;
   }
 
   /// In cells, rounded outwards.
@@ -80,7 +82,7 @@ struct Grid {
     const vec3 margin = marginOf(box);
     Bounds placed;
     placed.lower = glm::max(glm::floor((box.lower - margin - lower) * scale - kGridMargin), vec3(0.0F));
-    placed.upper = glm::min(glm::ceil((box.upper + margin - lower) * scale + kGridMargin), vec3(65'535.0F));
+    placed.upper = glm::min(glm::ceil((box.upper + margin - lower) * scale + kGridMargin), vec3(kTreeGridEnd));
     return placed;
   }
 };
@@ -101,22 +103,51 @@ double growthOn(const Grid& grid, const BoxTree& tree) {
   return tree.nodes.empty() ? 1.0 : sum / static_cast<double>(tree.nodes.size());
 }
 
-TreeNode makeNode(const Bounds& box, std::uint32_t link) {
-  const vec3 margin = marginOf(box);
-  return {box.lower - margin, link, box.upper + margin, 0};
+/// Which nodes a walk asks for. A box is left out if a ray that met the next one around it meets it more often than
+/// not, by their areas: then asking for its two children costs less.
+std::vector<bool> chooseNodes(const BoxTree& tree) {
+  std::vector<bool> kept(tree.nodes.size(), true);
+  std::vector<double> around(tree.nodes.size(), double{kInfinity});  // half the area of the next box around a node
+  for (std::size_t i = 0; i < tree.nodes.size(); ++i) {
+    const BoxTree::Node& node = tree.nodes[i];
+    if (node.isLeaf()) continue;
+    const double area = halfAreaOf(node.box.extent());
+    kept[i] = area <= kMostMet * around[i];
+    around[i + 1] = around[node.first] = kept[i] ? area : around[i];
+  }
+  return kept;
 }
 
-CompactTreeNode makeCompactNode(const Grid& grid, const Bounds& box, std::uint32_t link) {
-  const Bounds placed = grid.place(box);
+/// Along directions of an octant: coordinates that fall are told the other way, from `end`.
+Bounds mirror(const Bounds& box, std::uint32_t octant, float end) {
+  Bounds mirrored = box;
+  for (int axis = 0; axis < 3; ++axis)
+    if ((octant >> static_cast<unsigned>(axis) & 1U) != 0) {
+      mirrored.lower[axis] = end - box.upper[axis];
+      mirrored.upper[axis] = end - box.lower[axis];
+    }
+  return mirrored;
+}
+
+TreeNode makeNode(const Bounds& box, std::uint32_t octant, std::uint32_t link) {
+  const vec3 margin = marginOf(box);
+  const Bounds placed = mirror({box.lower - margin, box.upper + margin}, octant, 0.0F);
+  return {placed.lower, link, placed.upper, 0};
+}
+
+CompactTreeNode makeCompactNode(const Grid& grid, const Bounds& box, std::uint32_t octant, std::uint32_t link) {
+  const Bounds placed = mirror(grid.place(box), octant, kTreeGridEnd);
   const uvec3 lower(placed.lower), upper(placed.upper);
   return {lower.x | lower.y << 16U, lower.z | upper.x << 16U, upper.y | upper.z << 16U, link};
 }
 
 /// Writes the nodes in the order that rays of one octant of directions walk them.
-/// @param nodes  as many as the tree has
-/// @param make   (box, link) -> node
+/// @param kept   of each node of the tree, whether it is written
+/// @param nodes  as many as are
+/// @param make   (box, octant, link) -> node
 template <class Node, class Make>
-void writeOrder(const BoxTree& tree, std::uint32_t octant, std::span<Node> nodes, const Make& make) {
+void writeOrder(const BoxTree& tree, const std::vector<bool>& kept, std::uint32_t octant, std::span<Node> nodes,
+                const Make& make) {
   std::uint32_t next = 0;
   // Below it is written: what follows is where a walk that misses the node goes on.
   struct Task {
@@ -133,10 +164,12 @@ void writeOrder(const BoxTree& tree, std::uint32_t octant, std::span<Node> nodes
       continue;
     }
     const BoxTree::Node& node = tree.nodes[task.node];
-    nodes[next] = make(node.box, node.isLeaf() ? kTreeLeaf | node.first << 2U | node.count : 0U);
-    ++next;
+    if (kept[task.node]) {
+      nodes[next] = make(node.box, octant, node.isLeaf() ? kTreeLeaf | node.first << 2U | node.count : 0U);
+      if (!node.isLeaf()) tasks.push_back({task.node, next, true});
+      ++next;
+    }
     if (node.isLeaf()) continue;
-    tasks.push_back({task.node, next - 1, true});
     const std::uint32_t first = task.node + 1, second = node.first;
     const bool turned = meetsSecondFirst(tree.nodes[first].box, tree.nodes[second].box, octant);
     tasks.push_back({turned ? first : second, 0, false});
@@ -146,11 +179,12 @@ void writeOrder(const BoxTree& tree, std::uint32_t octant, std::span<Node> nodes
 
 /// @param make  as above; @return  order by order
 template <class Node, class Make>
-std::vector<Node> writeOrders(const BoxTree& tree, std::uint32_t orders, const Make& make) {
-  const std::size_t count = tree.nodes.size();
+std::vector<Node> writeOrders(const BoxTree& tree, const std::vector<bool>& kept, std::uint32_t orders,
+                              const Make& make) {
+  const auto count = static_cast<std::size_t>(std::ranges::count(kept, true));
   std::vector<Node> nodes(count * orders);
   parallelFor(orders, [&](std::size_t octant) {
-    writeOrder(tree, static_cast<std::uint32_t>(octant), std::span(nodes).subspan(octant * count, count), make);
+    writeOrder(tree, kept, static_cast<std::uint32_t>(octant), std::span(nodes).subspan(octant * count, count), make);
   });
   return nodes;
 }
@@ -163,17 +197,20 @@ TreeTables makeTreeTables(const SceneData& scene, const BoxTreeBuilder& builder)
   TreeTables tables;
   tables.triangles.resize(tree.primitives.size());
   parallelFor(tree.primitives.size(), [&](std::size_t i) { tables.triangles[i] = triangles.all[tree.primitives[i]]; });
-  tables.node_count = static_cast<std::uint32_t>(tree.nodes.size());
+  const std::vector<bool> kept = chooseNodes(tree);
+  tables.node_count = static_cast<std::uint32_t>(std::ranges::count(kept, true));
   tables.order_count = triangles.all.size() <= kMaxOrdered ? 8 : 1;
   const Grid grid(tree.nodes.empty() ? Bounds{vec3(0.0F), vec3(0.0F)} : tree.nodes.front().box);
   tables.compact = growthOn(grid, tree) <= kMaxGrowth;
   if (tables.compact) {
     tables.grid_lower = grid.lower;
     tables.grid_scale = grid.scale;
-    const auto make = [&](const Bounds& box, std::uint32_t link) { return makeCompactNode(grid, box, link); };
-    tables.compact_nodes = writeOrders<CompactTreeNode>(tree, tables.order_count, make);
+    const auto make = [&](const Bounds& box, std::uint32_t octant, std::uint32_t link) {
+      return makeCompactNode(grid, box, octant, link);
+    };
+    tables.compact_nodes = writeOrders<CompactTreeNode>(tree, kept, tables.order_count, make);
   } else {
-    tables.nodes = writeOrders<TreeNode>(tree, tables.order_count, makeNode);
+    tables.nodes = writeOrders<TreeNode>(tree, kept, tables.order_count, makeNode);
   }
   return tables;
 }
@@ -182,15 +219,15 @@ TriangleTree::TriangleTree(gpu::Device& device, gpu::CommandRecorder& recorder, 
                            const BoxTreeBuilder& builder) {
   const TreeTables tables = makeTreeTables(scene, builder);
   compact_ = tables.compact;
-  walk_ = {.nodes = tables.node_count,
-           .orders = tables.order_count,
-           .grid_lower = tables.grid_lower,
-           .grid_scale = tables.grid_scale};
+  has_orders_ = tables.order_count > 1;
+  walk_ = {.nodes = tables.node_count, .grid_lower = tables.grid_lower, .grid_scale = tables.grid_scale};
   nodes_ = compact_ ? makeTable<CompactTreeNode>(device, recorder, tables.compact_nodes, "tree of triangles")
                     : makeTable<TreeNode>(device, recorder, tables.nodes, "tree of triangles");
   triangles_ = makeTable<TreeTriangle>(device, recorder, tables.triangles, "triangles of the tree");
 }
 
-std::vector<gpu::Constant> TriangleTree::constants() const { return {{kCompactConstant, compact_}}; }
+std::vector<gpu::Constant> TriangleTree::constants() const {
+  return {{kCompactConstant, compact_}, {kOrdersConstant, has_orders_}};
+}
 
 }  // namespace nephroid

@@ -2,7 +2,9 @@
 //
 // A shader walks it without a stack: nodes lie in the order of a depth-first walk, and each knows where the walk goes
 // on if its box is missed. Such an order suits rays of one octant of directions, in which it meets near boxes first;
-// small scenes have one for each of the eight. The boxes themselves come from a builder that the frame is given.
+// small scenes have one for each of the eight, and tell coordinates so that they rise along its directions. The boxes
+// themselves come from a builder that the frame is given; those are left out that a ray which met the box around them
+// mostly meets.
 //
 // Most of a walk's time goes into fetching nodes, so boxes lie on a grid of 16 bits over the scene and take a texel
 // each, unless that would make them much larger: things that are small in a wide scene keep boxes of floats, two texels
@@ -32,7 +34,7 @@ struct TreeTables {
   vec3 grid_lower{0};       ///< m, world; where the grid of compact nodes begins
   float grid_scale = 1.0F;  ///< its cells a metre
   std::vector<TreeTriangle> triangles;
-  std::uint32_t node_count = 0;   ///< of one order
+  std::uint32_t node_count = 0;   ///< of one order: boxes that are not left out
   std::uint32_t order_count = 1;  ///< 8: by the signs of the direction, bit k set where coordinate k is below 0
 };
 
@@ -47,20 +49,20 @@ class TriangleTree {
 
   /// What a shader is pushed.
   struct Walk {
-    std::uint32_t nodes, orders;
+    std::uint32_t nodes;
     vec3 grid_lower;
     float grid_scale;
   };
   const Walk& walk() const { return walk_; }
   /// Of frame/triangle_tree.glsl.
   std::vector<gpu::Constant> constants() const;
-  const gpu::Image& nodes() const { return nodes_; }
-  const gpu::Image& triangles() const { return triangles_; }
+  const gpu::Buffer& nodes() const { return nodes_; }
+  const gpu::Buffer& triangles() const { return triangles_; }
 
  private:
-  bool compact_ = false;
+  bool compact_ = false, has_orders_ = false;
   Walk walk_;
-  gpu::Image nodes_, triangles_;
+  gpu::Buffer nodes_, triangles_;
 };
 
 }  // namespace nephroid

@@ -119,7 +119,7 @@ void PassCommands::bindResources(std::span<const Bound> resources) {
              .dstBinding = bound.binding,
              .descriptorCount = 1,
              .descriptorType = type};
-    if (type == VK_DESCRIPTOR_TYPE_UNIFORM_TEXEL_BUFFER) {
+    if (type == VK_DESCRIPTOR_TYPE_UNIFORM_TEXEL_BUFFER || type == VK_DESCRIPTOR_TYPE_STORAGE_TEXEL_BUFFER) {
       write.pTexelBufferView = &bound.buffer->texelView();
     } else if (bound.buffer) {
       buffers[i] = {bound.buffer->handle(), 0, VK_WHOLE_SIZE};

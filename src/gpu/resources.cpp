@@ -61,7 +61,15 @@ std::uint32_t texelBytes(VkFormat format) {
   }
 }
 
-Buffer::Buffer(Device& device, VkDeviceSize size, VkBufferUsageFlags usage, MemoryIntent intent, std::string_view name)
+namespace {
+
+constexpr VkBufferUsageFlags kTexelUsages =
+    VK_BUFFER_USAGE_UNIFORM_TEXEL_BUFFER_BIT | VK_BUFFER_USAGE_STORAGE_TEXEL_BUFFER_BIT;
+
+}  // namespace
+
+Buffer::Buffer(Device& device, VkDeviceSize size, VkBufferUsageFlags usage, MemoryIntent intent, std::string_view name,
+               VkFormat texels)
     : device_(&device), size_(size) {
   // What shaders see of a buffer is bounded, by 128 MiB on some devices.
   if ((usage & VK_BUFFER_USAGE_STORAGE_BUFFER_BIT) != 0 && size > device.limits().maxStorageBufferRange)
@@ -83,21 +91,21 @@ Buffer::Buffer(Device& device, VkDeviceSize size, VkBufferUsageFlags usage, Memo
     check(api.BindBufferMemory(device.handle(), handle_, allocation_.memory(), allocation_.offset()),
           fmt::format("binding the buffer '{}'", name));
     device.setName(VK_OBJECT_TYPE_BUFFER, bitsOf(handle_), name);
-    if ((usage & VK_BUFFER_USAGE_UNIFORM_TEXEL_BUFFER_BIT) != 0) makeTexelView(name);
+    if ((usage & kTexelUsages) != 0) makeTexelView(texels, name);
   } catch (...) {
     api.DestroyBuffer(device.handle(), handle_, nullptr);
     throw;
   }
 }
 
-void Buffer::makeTexelView(std::string_view name) {
-  constexpr VkFormat kFormat = VK_FORMAT_R32G32B32A32_UINT;
-  const VkDeviceSize texels = size_ / texelBytes(kFormat);
+void Buffer::makeTexelView(VkFormat format, std::string_view name) {
+  const VkDeviceSize texels = size_ / texelBytes(format);
   if (texels > device_->limits().maxTexelBufferElements)
-    throw ResourceError(fmt::format("'{}' needs {} texels and {} lets a buffer have {}", name, texels, device_->name(),
-                                    device_->limits().maxTexelBufferElements));
+    throw ResourceError(
+        fmt::format("'{}' needs {} texels and {} lets a buffer have {}; use a smaller scene or another device", name,
+                    texels, device_->name(), device_->limits().maxTexelBufferElements));
   const VkBufferViewCreateInfo info{
-      .sType = VK_STRUCTURE_TYPE_BUFFER_VIEW_CREATE_INFO, .buffer = handle_, .format = kFormat, .range = VK_WHOLE_SIZE};
+      .sType = VK_STRUCTURE_TYPE_BUFFER_VIEW_CREATE_INFO, .buffer = handle_, .format = format, .range = VK_WHOLE_SIZE};
   check(device_->api().CreateBufferView(device_->handle(), &info, nullptr, &texel_view_),
         fmt::format("creating a view of the buffer '{}'", name));
 }

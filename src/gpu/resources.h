@@ -27,11 +27,13 @@ class Buffer {
  public:
   Buffer() = default;
   /// @param size   bytes, > 0
-  /// @param usage  VK_BUFFER_USAGE_…; transfers both ways are always allowed. Shaders fetch uniform texel buffers in
-  ///               texels of four words, which some devices do many times as fast as word by word
-  /// @param name   for messages and captures
+  /// @param usage   VK_BUFFER_USAGE_…; transfers both ways are always allowed. Shaders fetch uniform texel buffers
+  ///                texel by texel, which some devices do many times as fast as word by word
+  /// @param name    for messages and captures
+  /// @param texels  of texel buffers
   /// @throws ResourceError
-  Buffer(Device& device, VkDeviceSize size, VkBufferUsageFlags usage, MemoryIntent intent, std::string_view name);
+  Buffer(Device& device, VkDeviceSize size, VkBufferUsageFlags usage, MemoryIntent intent, std::string_view name,
+         VkFormat texels = VK_FORMAT_R32G32B32A32_UINT);
   Buffer(Buffer&& other) noexcept { swap(other); }
   Buffer& operator=(Buffer&& other) noexcept {
     swap(other);
@@ -52,7 +54,7 @@ class Buffer {
 
  private:
   void swap(Buffer& other) noexcept;
-  void makeTexelView(std::string_view name);
+  void makeTexelView(VkFormat format, std::string_view name);
 
   Device* device_ = nullptr;
   VkBuffer handle_ = VK_NULL_HANDLE;

@@ -30,8 +30,12 @@ Box boxOf(const TreeTables& tables, std::size_t node) {
           vec3(uvec3(n.lower_z_upper_x >> 16U, n.upper_yz & m, n.upper_yz >> 16U)), n.link};
 }
 
-bool holds(const TreeTables& tables, const Box& box, vec3 corner) {
-  const vec3 placed = (corner - tables.grid_lower) * tables.grid_scale;
+/// @param octant  of directions along which the box is told
+bool holds(const TreeTables& tables, std::uint32_t octant, const Box& box, vec3 corner) {
+  vec3 placed = (corner - tables.grid_lower) * tables.grid_scale;
+  for (int axis = 0; axis < 3; ++axis)
+    if ((octant >> static_cast<unsigned>(axis) & 1U) != 0)
+      placed[axis] = (tables.compact ? kTreeGridEnd : 0.0F) - placed[axis];
   return glm::all(glm::lessThanEqual(box.lower, placed)) && glm::all(glm::lessThanEqual(placed, box.upper));
 }
 
@@ -53,8 +57,8 @@ std::set<std::uint32_t> walk(const TreeTables& tables, std::uint32_t order) {
       const TreeTriangle& t = tables.triangles[i];
       EXPECT_TRUE(found.insert(i).second);
       for (const vec3& corner : {t.a, t.b, t.c}) {
-        EXPECT_TRUE(holds(tables, box, corner));
-        for (const auto& [end, outer] : above) EXPECT_TRUE(holds(tables, outer, corner));
+        EXPECT_TRUE(holds(tables, order, box, corner));
+        for (const auto& [end, outer] : above) EXPECT_TRUE(holds(tables, order, outer, corner));
       }
     }
   }
@@ -82,6 +86,24 @@ TEST(TriangleTreeTest, SmallThingsOnAWideFloorKeepTheirBoxes) {
   EXPECT_FALSE(tables.compact);
   EXPECT_TRUE(tables.compact_nodes.empty());
   expectWhole(tables);
+}
+
+TEST(TriangleTreeTest, LargeScenesHaveOneOrder) {
+  const TreeTables tables = makeTreeTables(loadScene("builtin:sphere?segments=650"), buildBoxTree);
+  EXPECT_EQ(tables.order_count, 1U);
+  expectWhole(tables);
+}
+
+TEST(TriangleTreeTest, BoxesThatAreMostlyMetAreLeftOut) {
+  const SceneData scene = loadScene("builtin:sphere?segments=16");
+  std::size_t boxes = 0;
+  const TreeTables tables = makeTreeTables(scene, [&](std::span<const Bounds> bounds, const BoxTreeCosts& costs) {
+    BoxTree tree = buildBoxTree(bounds, costs);
+    boxes = tree.nodes.size();
+    return tree;
+  });
+  EXPECT_LT(tables.node_count, boxes);
+  EXPECT_GT(2 * tables.node_count, boxes);  // the leaves alone are half of them
 }
 
 TEST(TriangleTreeTest, AnEmptySceneHasNone) {

@@ -94,7 +94,7 @@ Met walkToRay(Ray ray, uvec2 seen, vec3 place, float near) {
     float w = hit.size - hit.u - hit.v;
     float worst = min(min(hit.u, hit.v), w);
     float tolerance = kOnEdge * hit.size;
-    uvec4 beyond = texelFetch(neighbour_table, texelOf(instance.first_triangle + triangle), 0);
+    uvec4 beyond = texelFetch(neighbour_table, int(instance.first_triangle + triangle));
     // The edges of weights v, w and u.
     uint next = hit.v == worst ? beyond.x : w == worst ? beyond.y : beyond.z;
     // Between two triangles that both say that it is just beyond the other, it is on their edge.
@@ -115,7 +115,7 @@ Met walkToRay(Ray ray, uvec2 seen, vec3 place, float near) {
 Met walkToExit(Ray ray, Start start) {
   Met best = Met(kFarAway, 0.0, 0.0, kNowhere, 0u);
   InstanceRecord instance = fetchInstance(start.instance);
-  uvec4 beside = texelFetch(neighbour_table, texelOf(instance.first_triangle + start.triangle), 0);
+  uvec4 beside = texelFetch(neighbour_table, int(instance.first_triangle + start.triangle));
   for (uint k = 0u; k < 3u; ++k) {
     uint first = k == 0u ? beside.x : k == 1u ? beside.y : beside.z;
     if (first == kNowhere) continue;

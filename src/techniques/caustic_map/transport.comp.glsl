@@ -22,7 +22,7 @@ layout(scalar, set = 0, binding = 7) readonly buffer Views {
   ViewRecord emission_views[kMostEmissionViews];
   PictureView picture_views[];  // the same, then those of receivers
 };
-layout(set = 0, binding = 16) uniform usampler2D neighbour_table;
+layout(set = 0, binding = 16) uniform usamplerBuffer neighbour_table;
 layout(constant_id = 31) const uint kSearch = kSearchTree;
 layout(constant_id = 32) const uint kExit = kExitExact;
 #include "techniques/caustic_map/receiver_search.glsl"

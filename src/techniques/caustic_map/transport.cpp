@@ -82,8 +82,8 @@ const gpu::ComputePipeline& Transport::pipelineFor(const LightPictures& pictures
       device_,
       {.shader = shaders::transport_comp,
        .bindings = SceneBuffers::bindings({kTable, kTable, kTexture, kTexture, kTexture, kTexture, kTexture,
-                                           kTable, kTable, kTexture, kTexture, kTexture, kTable,   kTable,
-                                           kTable, kTable, kTable,   kTexture, kTexture, kTable}),
+                                           kTable, kTable, kTexels,  kTexture, kTexture, kTable,   kTable,
+                                           kTable, kTable, kTable,   kTexels,  kTexels,  kTable}),
        .push_bytes = sizeof(TransportPush),
        .constants = std::move(constants)},
       "transport");
@@ -135,7 +135,6 @@ void Transport::record(gpu::CommandRecorder& recorder, const LightPictures& pict
       .seed = settings.seed,
       .specular_alpha = settings.specular_alpha,
       .tree_nodes = tree.nodes,
-      .tree_orders = tree.orders,
       .tree_grid_lower = tree.grid_lower,
       .tree_grid_scale = tree.grid_scale};
   const Flights flights{pictures, lights, settings, photons};
@@ -180,8 +179,8 @@ void Transport::recordFlights(gpu::CommandRecorder& recorder, const Flights& fli
     landings[i] = lands ? &(*settings.landings)[i].chunks()[0].buffer : &nothing_;
   if (settings.search == Search::kTree) NEPHROID_ASSERT_EQ(pictures.tree == nullptr, false);
   // Something has to be bound.
-  const gpu::Image& tree_nodes = pictures.tree != nullptr ? pictures.tree->nodes() : buffers_.neighbours();
-  const gpu::Image& tree_triangles = pictures.tree != nullptr ? pictures.tree->triangles() : buffers_.neighbours();
+  const gpu::Buffer& tree_nodes = pictures.tree != nullptr ? pictures.tree->nodes() : buffers_.neighbours();
+  const gpu::Buffer& tree_triangles = pictures.tree != nullptr ? pictures.tree->triangles() : buffers_.neighbours();
   const gpu::ComputePipeline& pipeline = pipelineFor(pictures, settings);
   std::vector<Use> uses = buffers_.uses(
       Access::kComputeRead, {Use(views_, Access::kComputeRead), Use(flights.lights, Access::kComputeRead),
@@ -192,7 +191,7 @@ void Transport::recordFlights(gpu::CommandRecorder& recorder, const Flights& fli
     for (const gpu::Image* image : {&layers->seen(), &layers->surfaces(), &layers->depths()})
       uses.emplace_back(*image, Access::kComputeRead);
   if (pictures.tree != nullptr)
-    for (const gpu::Image* image : {&tree_nodes, &tree_triangles}) uses.emplace_back(*image, Access::kComputeRead);
+    for (const gpu::Buffer* table : {&tree_nodes, &tree_triangles}) uses.emplace_back(*table, Access::kComputeRead);
   if (lists)
     for (const gpu::Buffer* buffer : {&standings, &forks, &interiors})
       uses.emplace_back(*buffer, Access::kComputeWrite);
@@ -210,7 +209,7 @@ void Transport::recordFlights(gpu::CommandRecorder& recorder, const Flights& fli
                                            Bound(13, pictures.receivers.surfaces(), nearest),
                                            Bound(14, photons),
                                            Bound(15, account),
-                                           Bound(16, buffers_.neighbours(), nearest),
+                                           Bound(16, buffers_.neighbours()),
                                            Bound(17, pictures.generators.depths(), nearest),
                                            Bound(18, pictures.receivers.depths(), nearest),
                                            Bound(19, cells),
@@ -218,8 +217,8 @@ void Transport::recordFlights(gpu::CommandRecorder& recorder, const Flights& fli
                                            Bound(21, interiors),
                                            Bound(22, *landings[0]),
                                            Bound(23, *landings[1]),
-                                           Bound(24, tree_nodes, nearest),
-                                           Bound(25, tree_triangles, nearest),
+                                           Bound(24, tree_nodes),
+                                           Bound(25, tree_triangles),
                                            Bound(26, standings)}));
     commands.pushConstants(push);
     if (lists) {

@@ -139,7 +139,6 @@ struct TransportPush {
   uint seed;             // of microfacets
   float specular_alpha;  // an interface of a larger one is a diffuse lobe
   uint tree_nodes;       // TriangleTree::Walk
-  uint tree_orders;
   vec3 tree_grid_lower;
   float tree_grid_scale;
 };
