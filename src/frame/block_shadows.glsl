@@ -64,7 +64,7 @@ uint findDoubtful(uint light_index, LightRecord light, BlockPoints points, uint 
     [[unroll]] for (uint k = 0u; k < kBlockPoints; ++k)
       same |= coarsen(points.cells[k]) == coarsen(cell) ? 1u << k : 0u;
     GridLists lists = listsOf(light, cell);
-    bool is_empty = fetchHead(lists.coarse, light_index) == kNowhere && fetchHead(lists.mark, light_index) == kNowhere;
+    bool is_empty = fetchHead(lists.coarse) == kNowhere && fetchHead(lists.mark) == kNowhere;
     doubtful |= is_empty ? 0u : same & wanted;
     wanted &= ~same;
   } while (wanted != 0u);
@@ -82,7 +82,7 @@ uint findShadowed(uint light_index, LightRecord light, uint instance, uint trian
     uint cell = doubtful != 0u ? cellOf(points, uint(findLSB(doubtful))) : 0u, same = 0u;
     [[unroll]] for (uint k = 0u; k < kBlockPoints; ++k) same |= points.cells[k] == cell ? 1u << k : 0u;
     GridLists lists = listsOf(light, cell);
-    uvec2 heads = uvec2(fetchHead(lists.fine, light_index), fetchHead(lists.coarse, light_index));
+    uvec2 heads = uvec2(fetchHead(lists.fine), fetchHead(lists.coarse));
     if (lists.coarse == walked) heads.y = kNowhere;
     if (doubtful == 0u) heads = uvec2(kNowhere);
     walked = lists.coarse;

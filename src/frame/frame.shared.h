@@ -143,7 +143,7 @@ struct LightRecord {
   uint view_count;  // 6: a cube of views along ±x, ±y, ±z; 1; 0: it does not shine
   uint grid_size;   // cells along a side of each view
   uint has_size;    // 1: this is one point of it, or one direction
-  uint pad;
+  uint first_head;  // of its lists
   // Directional: the place on its grid, in cells, of a place in the world. Of a cube of views it follows without.
   vec4 grid_row_x;
   vec4 grid_row_y;
@@ -218,8 +218,6 @@ struct TreeTriangle {
 
 /// Cells of the fine grid along a side of one of the coarse grid, where the lists of large triangles are.
 NEPHROID_CONST uint kCoarseCell = 8u;
-/// Cells in a row of the image of heads.
-NEPHROID_CONST uint kHeadsShift = 10u;
 
 NEPHROID_NAMESPACE_END
 

@@ -10,9 +10,9 @@
 
 layout(local_size_x = 64) in;
 layout(set = 0, binding = 7) uniform usamplerBuffer view_table;
-// By light; in each, fine cells view by view, then coarse cells, then marks of the coarse cells in whose fine ones there
+// Light by light; of each, fine cells view by view, then coarse cells, then marks of the coarse cells in whose fine ones there
 // is something.
-layout(set = 0, binding = 8, r32ui) uniform uimage2DArray heads;
+layout(set = 0, binding = 8, r32ui) uniform uimageBuffer heads;
 layout(set = 0, binding = 9, rgba32ui) writeonly uniform uimageBuffer nodes;
 layout(scalar, set = 0, binding = 10) buffer Counters { uint node_counts[]; };  // by light
 
@@ -20,6 +20,7 @@ layout(push_constant, scalar) uniform Push {
   uint instance_index;
   uint triangle_count;
   uint light;
+  uint first_head;  // of its lists
   uint first_view;
   uint view_count;
   uint view_mask;  // views that may show the instance
@@ -43,13 +44,11 @@ const float kCutShare = 1e-6;
 /// Widening of triangles, in cells: the rounding of projected corners, of which cells know nothing.
 const float kMargin = 0.01;
 
-ivec3 placeOfHead(uint list) { return ivec3(list & ((1u << kHeadsShift) - 1u), list >> kHeadsShift, light); }
-
 void addNode(uint list, GridNode node) {
   uint place = atomicAdd(node_counts[light], 1u);
   if (place >= node_capacity) return;  // counted: the lists are built again with room for all
   place += first_node;
-  node.next = imageAtomicExchange(heads, placeOfHead(list), place);
+  node.next = imageAtomicExchange(heads, int(list), place);
   imageStore(nodes, int(3u * place), uvec4(floatBitsToUint(node.a), node.next));
   imageStore(nodes, int(3u * place + 1u), uvec4(floatBitsToUint(node.b), node.instance));
   imageStore(nodes, int(3u * place + 2u), uvec4(floatBitsToUint(node.c), node.triangle));
@@ -140,7 +139,7 @@ void addToCells(Outline o, GridNode node, uint first_list, uint first_mark, int 
       ivec2 coarse = ivec2(x, y) / int(kCoarseCell);
       uint mark = first_mark + uint(coarse.y * (size / int(kCoarseCell)) + coarse.x);
       // All write the same.
-      if (first_mark != kNowhere) imageAtomicMin(heads, placeOfHead(mark), 0u);
+      if (first_mark != kNowhere) imageAtomicMin(heads, int(mark), 0u);
     }
   }
 }
@@ -159,15 +158,15 @@ void addToView(uint view, GridNode node) {
   ivec2 last = ivec2(clamp(floor(upper + kMargin), vec2(0.0), vec2(float(size - 1))));
   ivec2 extent = last - first + 1;
   uint coarse_cells = (grid_size / kCoarseCell) * (grid_size / kCoarseCell);
-  uint first_list = view * grid_size * grid_size;
-  uint first_mark = view_count * (grid_size * grid_size + coarse_cells) + view * coarse_cells;
+  uint first_list = first_head + view * grid_size * grid_size;
+  uint first_mark = first_head + view_count * (grid_size * grid_size + coarse_cells) + view * coarse_cells;
   if (isLarge(o, extent)) {
     int coarse = int(kCoarseCell);
     for (int k = 0; k < o.count; ++k) o.corners[k] /= float(coarse);
     size /= coarse;
     first /= coarse;
     last /= coarse;
-    first_list = view_count * grid_size * grid_size + view * coarse_cells;
+    first_list = first_head + view_count * grid_size * grid_size + view * coarse_cells;
     first_mark = kNowhere;
   }
   addToCells(o, node, first_list, first_mark, size, first, last);

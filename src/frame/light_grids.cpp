@@ -10,7 +10,7 @@
 namespace nephroid {
 namespace {
 
-/// Of the heads of all lights together; of one they then have no more rows than any device's images.
+/// Of the heads of all lights together.
 constexpr std::uint64_t kMaxHeadBytes = std::uint64_t{64} << 20;
 /// Cells along a side of a view: enough for lists to be short, and what no scene needs more of.
 constexpr std::uint32_t kMinGridSize = 32;
@@ -21,7 +21,7 @@ constexpr std::uint32_t kFinerIfStaying = 2;
 
 /// Pushed by light_grid.comp.
 struct GridPush {
-  std::uint32_t instance, triangle_count, light, first_view, view_count, view_mask, grid_size, first_node,
+  std::uint32_t instance, triangle_count, light, first_head, first_view, view_count, view_mask, grid_size, first_node,
       node_capacity;
   vec3 scene_lower, scene_upper;
   vec4 source;
@@ -61,7 +61,7 @@ LightGrids::LightGrids(gpu::Device& device, const SceneData& scene, const SceneB
       grid_size_(chooseGridSize(grid_size, light_views_->count())),
       pipeline_(device,
                 {.shader = shaders::light_grid_comp,
-                 .bindings = SceneBuffers::bindings({kTexels, kStorage, kStoredTexels, kTable}),
+                 .bindings = SceneBuffers::bindings({kTexels, kStoredTexels, kStoredTexels, kTable}),
                  .push_bytes = sizeof(GridPush),
                  .constants = buffers.traits().constants()},
                 "light grid") {
@@ -70,17 +70,11 @@ LightGrids::LightGrids(gpu::Device& device, const SceneData& scene, const SceneB
 }
 
 void LightGrids::makeHeads() {
-  const auto layers = static_cast<std::uint32_t>(std::max<std::size_t>(light_views_->count(), 1));
-  constexpr std::uint32_t kRow = 1U << kHeadsShift;
-  heads_ = gpu::Image(device_,
-                      {.format = VK_FORMAT_R32_UINT,
-                       .width = kRow,
-                       .height = static_cast<std::uint32_t>((headsOf(grid_size_) + kRow - 1) / kRow),
-                       .layers = layers,
-                       .usage = VK_IMAGE_USAGE_STORAGE_BIT | VK_IMAGE_USAGE_SAMPLED_BIT,
-                       .is_array = true},
-                      "heads of lights' grids");
-  counters_ = gpu::Buffer(device_, layers * sizeof(std::uint32_t), VK_BUFFER_USAGE_STORAGE_BUFFER_BIT,
+  const auto lights = static_cast<std::uint32_t>(std::max<std::size_t>(light_views_->count(), 1));
+  heads_ = gpu::Buffer(device_, lights * headsOf(grid_size_) * sizeof(std::uint32_t),
+                       VK_BUFFER_USAGE_UNIFORM_TEXEL_BUFFER_BIT | VK_BUFFER_USAGE_STORAGE_TEXEL_BUFFER_BIT,
+                       gpu::MemoryIntent::kDevice, "heads of lights' grids", VK_FORMAT_R32_UINT);
+  counters_ = gpu::Buffer(device_, lights * sizeof(std::uint32_t), VK_BUFFER_USAGE_STORAGE_BUFFER_BIT,
                           gpu::MemoryIntent::kDevice, "counters of lights' grids");
   // Small triangles lie in one cell or two of one view, thin ones in some dozens; if there are more, the first build
   // tells.
@@ -123,6 +117,7 @@ bool LightGrids::makeViews(std::uint32_t sample) {
       light.views = view ? view->views : std::vector<ViewRecord>{};
       light.varies = view ? view->varies : !light_views_->isOut(i);
       light.record.has_size = view && view->varies ? 1 : 0;
+      light.record.first_head = static_cast<std::uint32_t>(i * headsOf(grid_size_));
       setGrid(light.record, light.views, light.varies ? grid_size_ : kFinerIfStaying * grid_size_);
       changed = true;
     }
@@ -165,7 +160,8 @@ void LightGrids::build(gpu::CommandRecorder& recorder, std::uint32_t index) {
       light.record.kind == kLightDirectional ? vec4(-light.record.direction, 0.0F) : vec4(light.record.position, 1.0F);
   recorder.pass("clear grid", {Use(heads_, Access::kTransferWrite), Use(counters_, Access::kTransferWrite)},
                 [&](PassCommands& commands) {
-                  commands.clearLayer(heads_, index, {.uint32 = {kNowhere, kNowhere, kNowhere, kNowhere}});
+                  const VkDeviceSize bytes = headsOf(grid_size_) * sizeof(std::uint32_t);
+                  commands.fill(heads_, kNowhere, index * bytes, bytes);
                   commands.fill(counters_, 0, index * sizeof(std::uint32_t), sizeof(std::uint32_t));
                 });
   const std::vector<Use> uses =
@@ -181,9 +177,9 @@ void LightGrids::build(gpu::CommandRecorder& recorder, std::uint32_t index) {
         if (mayShow(light.views[v], draw.bounds)) view_mask |= 1U << v;
       if (view_mask == 0) continue;
       const std::uint32_t triangles = draw.index_count / 3;
-      commands.pushConstants(GridPush{draw.instance, triangles, index, light.first_view, light.record.view_count,
-                                      view_mask, light.record.grid_size, light.first_node, light.node_capacity,
-                                      bounds_.lower, bounds_.upper, source});
+      commands.pushConstants(GridPush{draw.instance, triangles, index, light.record.first_head, light.first_view,
+                                      light.record.view_count, view_mask, light.record.grid_size, light.first_node,
+                                      light.node_capacity, bounds_.lower, bounds_.upper, source});
       commands.dispatch(gpu::groupsOf(triangles, 64));
     }
   });
@@ -205,8 +201,7 @@ bool LightGrids::checkCapacity() {
 }
 
 std::vector<gpu::Bound> LightGrids::bound(std::uint32_t first) const {
-  return {
-      {first, light_table_}, {first + 1, heads_, buffers_.sampler()}, {first + 2, nodes_}, {first + 3, lights_buffer_}};
+  return {{first, light_table_}, {first + 1, heads_}, {first + 2, nodes_}, {first + 3, lights_buffer_}};
 }
 
 std::vector<gpu::Use> LightGrids::uses() const {

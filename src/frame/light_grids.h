@@ -68,8 +68,7 @@ class LightGrids {
   std::optional<LightViews> light_views_;
   std::uint32_t grid_size_;
   gpu::ComputePipeline pipeline_;
-  gpu::Image heads_;
-  gpu::Buffer light_table_, view_table_, nodes_;
+  gpu::Buffer light_table_, view_table_, heads_, nodes_;
   gpu::Buffer lights_buffer_, counters_;
   std::vector<Light> lights_;
 };

@@ -13,7 +13,7 @@
 #include "frame/cube.shared.h"
 
 layout(set = 0, binding = NEPHROID_LIGHT_BINDINGS) uniform usamplerBuffer light_table;
-layout(set = 0, binding = NEPHROID_LIGHT_BINDINGS + 1) uniform usampler2DArray grid_heads;  // a layer a light
+layout(set = 0, binding = NEPHROID_LIGHT_BINDINGS + 1) uniform usamplerBuffer grid_heads;
 layout(set = 0, binding = NEPHROID_LIGHT_BINDINGS + 2) uniform usamplerBuffer grid_nodes;
 // For places in the shader that ask for one light whose index is a constant: then each word is read once, and not by
 // every thread.
@@ -114,11 +114,7 @@ bool hasEdges(GridNode node, RayTriangle hit) {
   return hit.u != 0.0 || isBefore(node.c, node.a);
 }
 
-ivec3 headOf(uint list, uint light) {
-  return ivec3(list & ((1u << kHeadsShift) - 1u), list >> kHeadsShift, light);
-}
-
-uint fetchHead(uint list, uint light_index) { return texelFetch(grid_heads, headOf(list, light_index), 0).x; }
+uint fetchHead(uint list) { return texelFetch(grid_heads, int(list)).x; }
 
 GridNode fetchNode(uint i) {
   uvec4 a = texelFetch(grid_nodes, int(3u * i));
@@ -176,7 +172,7 @@ uint cellOnGrid(LightRecord light, vec3 position) {
   return valid ? cell.x | (cell.y << 14) | (face << 28) : kNowhere;
 }
 
-/// Lists of a light's grid that hold what may lie between the points of a cell and the light.
+/// Heads of the lists of a light's grid that hold what may lie between the points of a cell and the light.
 struct GridLists {
   uint fine;
   uint coarse;
@@ -186,9 +182,9 @@ struct GridLists {
 GridLists listsOf(LightRecord light, uint cell) {
   uvec2 place = uvec2(cell & 0x3FFFu, cell >> 14 & 0x3FFFu);
   uint face = cell >> 28, size = light.grid_size, coarse_size = size / kCoarseCell;
-  uint coarse = light.view_count * size * size + (face * coarse_size + place.y / kCoarseCell) * coarse_size +
-                place.x / kCoarseCell;
-  return GridLists((face * size + place.y) * size + place.x, coarse,
+  uint coarse = light.first_head + light.view_count * size * size +
+                (face * coarse_size + place.y / kCoarseCell) * coarse_size + place.x / kCoarseCell;
+  return GridLists(light.first_head + (face * size + place.y) * size + place.x, coarse,
                    coarse + light.view_count * coarse_size * coarse_size);
 }
 
@@ -197,7 +193,7 @@ vec3 visibilityOf(uint light_index, LightRecord light, Place place, Arriving arr
   uint cell = cellOnGrid(light, position);
   if (cell == kNowhere) return vec3(1.0);
   GridLists lists = listsOf(light, cell);
-  uvec2 heads = uvec2(fetchHead(lists.fine, light_index), fetchHead(lists.coarse, light_index));
+  uvec2 heads = uvec2(fetchHead(lists.fine), fetchHead(lists.coarse));
   Shadow shadow = walkLists(heads, place, arriving);
   if (shadow.blocked) return vec3(0.0);
   return kSceneHasPassable ? exp2(vec3(shadow.octaves) / -kOctave) : vec3(1.0);

@@ -21,7 +21,7 @@ gpu::ComputePipeline makePass(gpu::Device& device, gpu::Spirv shader, std::vecto
   constants.insert(constants.end(), lights.begin(), lights.end());
   return {device,
           {.shader = shader,
-           .bindings = SceneBuffers::bindings({kTexels, kTexture, kTexels, kTable, kTable, kTexture, kTexture, kTexels,
+           .bindings = SceneBuffers::bindings({kTexels, kTexels, kTexels, kTable, kTable, kTexture, kTexture, kTexels,
                                                kTexture, kStorage, kStorage, kTable}),
            .push_bytes = sizeof(SamplePush),
            .constants = std::move(constants)},

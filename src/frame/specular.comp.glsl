@@ -33,7 +33,7 @@
 
 layout(local_size_x = 64) in;
 layout(scalar, set = 0, binding = 11) readonly buffer Views { ViewRecord views[]; };
-layout(set = 0, binding = 12, rgba32ui) writeonly uniform uimage2D end_image;
+layout(set = 0, binding = 12, rgba32ui) writeonly uniform uimageBuffer stored_ends;
 layout(set = 0, binding = 13) uniform samplerBuffer band_table;  // wavelength in nm, and weight times their count
 layout(set = 0, binding = 16, rgba32f) uniform image2D specular_image;  // sum over samples, W/m²/sr
 
@@ -322,9 +322,9 @@ void noteEnd(Chains chains, Receiver receiver, uvec2 point) {
   uint chain = hashChain(hashChain(hashChain(chains.met, lit ? receiver.instance : kNowhere), face), stamp) | 1u;
   if (chains.unsure) chain = 0u;
   uint instance = lit ? receiver.instance : kNowhere;
-  imageStore(end_image, texelOfEnd(point, chains.way, 0u), uvec4(floatBitsToUint(place), chain));
-  imageStore(end_image, texelOfEnd(point, chains.way, 1u), floatBitsToUint(vec4(weight, chains.others)));
-  imageStore(end_image, texelOfEnd(point, chains.way, 2u),
+  imageStore(stored_ends, texelOfEnd(point, chains.way, 0u), uvec4(floatBitsToUint(place), chain));
+  imageStore(stored_ends, texelOfEnd(point, chains.way, 1u), floatBitsToUint(vec4(weight, chains.others)));
+  imageStore(stored_ends, texelOfEnd(point, chains.way, 2u),
              uvec4(instance, receiver.triangle, packUnitVector(receiver.dir), floatBitsToUint(receiver.ior_from)));
 }
 

@@ -15,7 +15,7 @@
 #include "frame/specular_others.glsl"
 
 layout(local_size_x = 64) in;
-layout(set = 0, binding = 10, rgba32f) writeonly uniform image2D bend_image;
+layout(set = 0, binding = 10, rgba32ui) writeonly uniform uimageBuffer stored_bends;
 layout(constant_id = 9) const bool kSceneTransmits = true;
 
 /// Pixels.
@@ -193,8 +193,8 @@ void listLit(Agreement a, uint packed_place, uint chain) {
   if (!a.agrees || !a.lit) return;
   listed[extend(kLitCells + chain, 1u)] = packed_place;
   uvec2 cell = unpackPlace(packed_place);
-  imageStore(bend_image, texelOfBend(cell, chain, 0u), a.bend_x);
-  imageStore(bend_image, texelOfBend(cell, chain, 1u), a.bend_y);
+  imageStore(stored_bends, texelOfBend(cell, chain, 0u), floatBitsToUint(a.bend_x));
+  imageStore(stored_bends, texelOfBend(cell, chain, 1u), floatBitsToUint(a.bend_y));
 }
 
 void sortCell(uint packed_place) {

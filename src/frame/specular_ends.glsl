@@ -3,7 +3,7 @@
 #ifndef NEPHROID_SPECULAR_ENDS_GLSL
 #define NEPHROID_SPECULAR_ENDS_GLSL
 
-#include "frame/tables.glsl"
+#include "frame/specular_grid.glsl"
 
 /// Of the chain that takes the way at every surface that carries most.
 struct ChainEnd {
@@ -19,25 +19,26 @@ struct ChainEnd {
 
 const uint kEndTexels = 3u;
 
-ivec2 texelOfEnd(uvec2 point, uint chain, uint texel) {
-  return ivec2((2u * point.x + chain) * kEndTexels + texel, point.y);
-}
+/// Of a point's chain, of all points' in rows.
+uint chainOf(uvec2 point, uint chain) { return 2u * (point.y * pointCount().x + point.x) + chain; }
 
-/// In the image of how ends bend between the corners of a cell: one texel along x, one along y, of its two chains.
-ivec2 texelOfBend(uvec2 cell, uint chain, uint along) { return ivec2(2u * (2u * cell.x + chain) + along, cell.y); }
+int texelOfEnd(uvec2 point, uint chain, uint texel) { return int(chainOf(point, chain) * kEndTexels + texel); }
+
+/// Of how ends bend between the corners of a cell: one texel along x, one along y, of its two chains.
+int texelOfBend(uvec2 cell, uint chain, uint along) { return int(2u * chainOf(cell, chain) + along); }
 
 #ifdef NEPHROID_ENDS_BINDING
 
-layout(set = 0, binding = NEPHROID_ENDS_BINDING) uniform usampler2D ends;
+layout(set = 0, binding = NEPHROID_ENDS_BINDING) uniform usamplerBuffer ends;
 
 /// Place and hash of an end.
-uvec4 fetchEndPlace(uvec2 point, uint chain) { return texelFetch(ends, texelOfEnd(point, chain, 0u), 0); }
+uvec4 fetchEndPlace(uvec2 point, uint chain) { return texelFetch(ends, texelOfEnd(point, chain, 0u)); }
 /// Its weight and others.
 vec4 fetchEndWeight(uvec2 point, uint chain) {
-  return uintBitsToFloat(texelFetch(ends, texelOfEnd(point, chain, 1u), 0));
+  return uintBitsToFloat(texelFetch(ends, texelOfEnd(point, chain, 1u)));
 }
 /// Its instance, triangle, dir and ior_from.
-uvec4 fetchEndSurface(uvec2 point, uint chain) { return texelFetch(ends, texelOfEnd(point, chain, 2u), 0); }
+uvec4 fetchEndSurface(uvec2 point, uint chain) { return texelFetch(ends, texelOfEnd(point, chain, 2u)); }
 
 /// What varies over a cell, from its corners: value = c + x·along_x + y·along_y + x·y·twist with x, y in [0, 1].
 struct Bilinear {

@@ -19,7 +19,7 @@
 #include "frame/receiver_map.glsl"
 
 layout(local_size_x = 64) in;
-layout(set = 0, binding = 17) uniform sampler2D bends;
+layout(set = 0, binding = 17) uniform usamplerBuffer bends;
 layout(set = 0, binding = 16, rgba32f) uniform image2D specular_image;  // sum over samples, W/m²/sr
 
 /// The triangle that a cell's chain ends on.
@@ -66,8 +66,8 @@ CellEnd fetchCellEnd(uvec2 cell) {
                        uintBitsToFloat(fetchEndPlace(below, chain)), uintBitsToFloat(fetchEndPlace(opposite, chain)));
   e.weight = bilinearOf(fetchEndWeight(cell, chain), fetchEndWeight(right, chain), fetchEndWeight(below, chain),
                         fetchEndWeight(opposite, chain));
-  e.bend_x = texelFetch(bends, texelOfBend(cell, chain, 0u), 0);
-  e.bend_y = texelFetch(bends, texelOfBend(cell, chain, 1u), 0);
+  e.bend_x = uintBitsToFloat(texelFetch(bends, texelOfBend(cell, chain, 0u)));
+  e.bend_y = uintBitsToFloat(texelFetch(bends, texelOfBend(cell, chain, 1u)));
   vec4 dir = dirAt(cell);
   e.dir = Bilinear(dir, vec4(0.0), vec4(0.0), vec4(0.0));
   if (kSceneHasMetal || kSceneHasGloss) e.dir = bilinearOf(dir, dirAt(right), dirAt(below), dirAt(opposite));

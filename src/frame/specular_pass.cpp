@@ -91,8 +91,8 @@ SpecularPass::SpecularPass(gpu::Device& device, gpu::CommandRecorder& recorder, 
   };
   const auto follow = [&](std::uint32_t task, const char* name) {
     return make(shaders::specular_comp,
-                {kTexels, kTexture, kTexels, kTable, kTable, kStorage, kTexels, kTexels, kTexture, kStorage, kTexels,
-                 kTexels, kTexture, kTable},
+                {kTexels, kTexels, kTexels, kTable, kTable, kStoredTexels, kTexels, kTexels, kTexture, kStorage,
+                 kTexels, kTexels, kTexture, kTable},
                 join(join(join(traits.pathConstants(), of_ends), inputs.tree.constants()), {{kTaskConstant, task}}),
                 name, true);
   };
@@ -102,10 +102,10 @@ SpecularPass::SpecularPass(gpu::Device& device, gpu::CommandRecorder& recorder, 
     cells_ = make(shaders::specular_cells_comp, {kTexture, kTable}, traits.constants(), "specular cells");
     mixed_ = make(shaders::specular_mixed_comp, {kTexture, kTable}, traits.constants(), "specular mixed cells");
     follow_most_ = follow(kFollowMost, "specular points");
-    agreement_ = make(shaders::specular_agreement_comp, {kTexture, kTable, kTexture, kStorage}, traits.pathConstants(),
-                      "specular agreement");
+    agreement_ = make(shaders::specular_agreement_comp, {kTexture, kTable, kTexels, kStoredTexels},
+                      traits.pathConstants(), "specular agreement");
     lit_ = make(shaders::specular_lit_comp,
-                {kTexels, kTexture, kTexels, kTable, kTexture, kTable, kTexture, kTexels, kTexture, kStorage, kTexture},
+                {kTexels, kTexels, kTexels, kTable, kTexture, kTable, kTexels, kTexels, kTexture, kStorage, kTexels},
                 join(traits.constants(), of_ends), "specular lit", true);
   }
   fitPicture(device);
@@ -124,22 +124,21 @@ uvec2 SpecularPass::pointCount() const {
 
 void SpecularPass::fitPicture(gpu::Device& device) {
   const gpu::ImageDesc& seen = inputs_.seen.desc();
-  const auto make = [&](VkFormat format, uvec2 size, const char* name, VkImageUsageFlags more_usage = 0) {
+  const auto make = [&](uvec2 size, const char* name) {
     return gpu::Image(device,
-                      {.format = format,
+                      {.format = kFloat4,
                        .width = size.x,
                        .height = size.y,
-                       .usage = VK_IMAGE_USAGE_STORAGE_BIT | VK_IMAGE_USAGE_SAMPLED_BIT | more_usage},
+                       .usage = VK_IMAGE_USAGE_STORAGE_BIT | VK_IMAGE_USAGE_SAMPLED_BIT},
                       name);
   };
-  sum_ = make(kFloat4, {seen.width, seen.height}, "specular");
+  sum_ = make({seen.width, seen.height}, "specular");
   // Something has to be bound, here and below.
-  caustic_sum_ = make(kFloat4, inputs_.receivers ? uvec2(seen.width, seen.height) : uvec2(1), "caustics in specular");
+  caustic_sum_ = make(inputs_.receivers ? uvec2(seen.width, seen.height) : uvec2(1), "caustics in specular");
   const uvec2 points = pointCount();
-  const uvec2 kept = hasCells() ? points : uvec2(1);
-  ends_ = make(VK_FORMAT_R32G32B32A32_UINT, kept * uvec2(kEndTexels * kChainCount, 1), "specular ends",
-               VK_IMAGE_USAGE_TRANSFER_DST_BIT);
-  bends_ = make(kFloat4, kept * uvec2(kBendTexels * kChainCount, 1), "how specular ends bend");
+  const std::uint64_t chains = hasCells() ? std::uint64_t{kChainCount} * points.x * points.y : 1;
+  ends_ = makeWrittenTable(device, chains * kEndTexels, "specular ends");
+  bends_ = makeWrittenTable(device, chains * kBendTexels, "how specular ends bend");
   stamp_ = 0;
   const VkDeviceSize words = VkDeviceSize{seen.width} * seen.height * kPixelListCount +
                              VkDeviceSize{points.x} * points.y * (kListCount - kPixelListCount);
@@ -208,8 +207,8 @@ void SpecularPass::recordAgreement(gpu::CommandRecorder& recorder, const Push& p
   recorder.pass("specular agreement", uses, [&](PassCommands& commands) {
     const gpu::Sampler& nearest = buffers_.sampler();
     commands.bind(agreement_);
-    commands.bindResources(buffers_.bound(
-        {Bound(7, inputs_.seen, nearest), Bound(8, lists_), Bound(9, ends_, nearest), Bound(10, bends_)}));
+    commands.bindResources(
+        buffers_.bound({Bound(7, inputs_.seen, nearest), Bound(8, lists_), Bound(9, ends_), Bound(10, bends_)}));
     commands.pushConstants(push);
     commands.dispatchIndirect(lists_, kCells * sizeof(ListHead));
   });
@@ -225,9 +224,9 @@ void SpecularPass::recordLit(gpu::CommandRecorder& recorder, Push push) {
   const std::vector<Use> of_lights = grids.uses();
   uses.insert(uses.end(), of_lights.begin(), of_lights.end());
   const gpu::Sampler& nearest = buffers_.sampler();
-  std::vector<Bound> bound = buffers_.bound(
-      {Bound(11, inputs_.seen, nearest), Bound(12, lists_), Bound(13, ends_, nearest), Bound(14, inputs_.lamps),
-       Bound(15, inputs_.environment, inputs_.environment_sampler), Bound(16, sum_), Bound(17, bends_, nearest)});
+  std::vector<Bound> bound =
+      buffers_.bound({Bound(11, inputs_.seen, nearest), Bound(12, lists_), Bound(13, ends_), Bound(14, inputs_.lamps),
+                      Bound(15, inputs_.environment, inputs_.environment_sampler), Bound(16, sum_), Bound(17, bends_)});
   appendReceivers(18, bound, uses);
   const std::vector<Bound> of_grids = grids.bound(SceneBuffers::kBindings);
   bound.insert(bound.end(), of_grids.begin(), of_grids.end());
@@ -274,7 +273,7 @@ void SpecularPass::record(gpu::CommandRecorder& recorder, const SamplePush& samp
   // The memory may be that of an earlier pass, whose ends bear the stamps to come.
   if (stamp_ == 0)
     recorder.pass("clear ends", {Use(ends_, Access::kTransferWrite)},
-                  [&](PassCommands& commands) { commands.clear(ends_, VkClearColorValue{}); });
+                  [&](PassCommands& commands) { commands.fill(ends_, 0); });
   ++stamp_;
   const Push push = pushOf(sample);
   recorder.pass("clear lists", {Use(no_lists_, Access::kTransferRead), Use(lists_, Access::kTransferWrite)},

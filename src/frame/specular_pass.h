@@ -67,8 +67,8 @@ class SpecularPass {
   gpu::ComputePipeline pixels_, show_;
   gpu::ComputePipeline cells_, mixed_, follow_most_, agreement_, lit_;  ///< where there are cells
   ReceiverMap no_receivers_;                                            ///< bound where there are none
-  gpu::Buffer bands_;
-  gpu::Image sum_, caustic_sum_, ends_, bends_;
+  gpu::Buffer bands_, ends_, bends_;
+  gpu::Image sum_, caustic_sum_;
   std::uint32_t stamp_ = 0;       ///< of the latest sample; 0: nothing is noted in `ends_` yet
   gpu::Buffer no_lists_, lists_;  ///< the heads of empty lists; heads and lists
 };
