@@ -47,7 +47,15 @@ void settleWavelength(PathState& state, const Encounter& encounter) {
   state.hero.weight = sampleWavelength(state.hero.u).weight;
 }
 
-void followWavelengths(PathState& state, const Encounter& encounter, vec3 wo, float specular_alpha, bool transmitted) {
+float HeroWavelengths::meanOverHero() const {
+  float sum = 0.0F;
+  for (int j = 0; j < kCount; ++j)
+    if (pdfs[j] > 0.0F) sum += maxComponent(values[j]) / pdfs[j];
+  return sum / kCount;
+}
+
+void followWavelengths(PathState& state, const Encounter& encounter, vec3 wo, float specular_alpha, bool transmitted,
+                       bool by_chance) {
   HeroWavelengths& hero = state.hero;
   if (!hero.open || !isDispersive(encounter.boundary)) return;
   if (transmitted) {
@@ -63,7 +71,7 @@ void followWavelengths(PathState& state, const Encounter& encounter, vec3 wo, fl
                        iorOf(encounter.boundary.to, band.wavelength_nm), specular_alpha)
                       .mirroring();
     hero.values[j] *= divide(mirrored[j].reflectance, mirrored[0].reflectance);
-    hero.pdfs[j] *= mirrored[j].probability / mirrored[0].probability;
+    if (by_chance) hero.pdfs[j] *= mirrored[j].probability / mirrored[0].probability;
     sum += band.weight * hero.values[j];
     pdf_sum += hero.pdfs[j];
   }

@@ -36,6 +36,9 @@ struct HeroWavelengths {
   float u = 0.0F;                   ///< of the hero, for sampleWavelength
   std::array<vec3, kCount> values;  ///< product of reflectances over the hero's, per wavelength; the hero is the first
   std::array<float, kCount> pdfs;   ///< product of probabilities over the hero's
+
+  /// What the wavelengths would carry on average, each as the hero, over what the hero does. @pre open
+  float meanOverHero() const;
 };
 
 /// Draws the path's hero if the interface is dispersive and there is none yet.
@@ -44,7 +47,9 @@ void drawWavelength(PathState& state, const Encounter& encounter, const Spectral
 void settleWavelength(PathState& state, const Encounter& encounter);
 /// After an event on a smooth interface without a diffuse part: settles the hero where the path was transmitted, and
 /// takes the other wavelengths along where it was mirrored. Does nothing where the interface is not dispersive.
-/// @param wo  unit, to where the path came from
-void followWavelengths(PathState& state, const Encounter& encounter, vec3 wo, float specular_alpha, bool transmitted);
+/// @param wo         unit, to where the path came from
+/// @param by_chance  the way was drawn; else it was taken for certain, and so it would have been by the others
+void followWavelengths(PathState& state, const Encounter& encounter, vec3 wo, float specular_alpha, bool transmitted,
+                       bool by_chance = true);
 
 }  // namespace nephroid

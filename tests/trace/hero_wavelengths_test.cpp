@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <vector>
 
 #include "closed_form/optics.h"
 #include "core/optics/dispersion.shared.h"
@@ -97,6 +98,45 @@ TEST_F(HeroWavelengthsTest, MirroredLightHasTheColourOfAllWavelengths) {
       }
     }
   }
+}
+
+TEST_F(HeroWavelengthsTest, MirroringThatIsFollowedForCertainHasTheMeanOfAllWavelengths) {
+  // A path that takes this way for certain carries R(λ), whichever wavelength is the hero: with W it is ¼ Σ R_j·w_j.
+  const double angle = 1.2;
+  for (float u = 0.01F; u < 1.0F; u += 0.07F) {
+    PathState state = openAt(u);
+    const Encounter encounter = meet(angle, false);
+    followWavelengths(state, encounter, wo_, 0.25F, false, false);
+    const dvec3 carried = reflectanceAt(state.wavelength_nm, angle, false) * dvec3(state.hero.weight);
+    dvec3 expected(0.0);
+    for (int j = 0; j < HeroWavelengths::kCount; ++j) {
+      const float turned = u + static_cast<float>(j) / HeroWavelengths::kCount;
+      const Band band = sampleWavelength(turned < 1.0F ? turned : turned - 1.0F);
+      expected +=
+          reflectanceAt(band.wavelength_nm, angle, false) * dvec3(band.weight) / double{HeroWavelengths::kCount};
+    }
+    for (int c = 0; c < 3; ++c) EXPECT_NEAR(carried[c], expected[c], 1e-5) << u;
+  }
+}
+
+TEST_F(HeroWavelengthsTest, WhatWavelengthsCarryOnAverageDependsOnNoHero) {
+  // After one mirroring for certain a wavelength carries R(λ), after one by chance as much as before.
+  const double angle = 1.2;
+  std::vector<double> carried;
+  for (int hero = 0; hero < HeroWavelengths::kCount; ++hero) {
+    PathState state = openAt((0.1F + static_cast<float>(hero)) / HeroWavelengths::kCount);
+    const Encounter first = meet(angle, false);
+    followWavelengths(state, first, wo_, 0.25F, false, false);
+    const Encounter second = meet(0.3, false);
+    followWavelengths(state, second, wo_, 0.25F, false, true);
+    carried.push_back(reflectanceAt(state.wavelength_nm, angle, false) *
+                      static_cast<double>(state.hero.meanOverHero()));
+  }
+  double mean = 0.0;
+  for (int j = 0; j < HeroWavelengths::kCount; ++j)
+    mean += reflectanceAt(openAt((0.1F + static_cast<float>(j)) / HeroWavelengths::kCount).wavelength_nm, angle, false);
+  mean /= HeroWavelengths::kCount;
+  for (const double c : carried) EXPECT_NEAR(c, mean, 1e-5 * mean);
 }
 
 TEST_F(HeroWavelengthsTest, LightThatIsBentHasTheHerosColour) {

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <vector>
 
 namespace nephroid {
 namespace {
@@ -12,18 +13,38 @@ constexpr int kRouletteStart = 6;
 /// Walks on the specular manifold draw their numbers from a seed of their own: how many they take is left to chance.
 constexpr std::uint32_t kWalkSeedOffset = 0x6D6E6565U;
 
+/// Where clear glass both mirrors and transmits, both ways are followed if the lesser of them keeps this share of what
+/// the path began with. So a path has at most some dozen strands at once; a mirror image in glass (0.04) is followed
+/// from outside and, once more, from within, but not the image of an image.
+constexpr float kLeastShare = 1.0F / 64.0F;
+/// What is transmitted then draws its numbers from another seed: if both ways took the same, their errors would add up.
+constexpr std::uint32_t kSplitSeedOffset = 0x73747261U;
+
 float powerHeuristic(float pdf, float other) {
   if (!std::isfinite(pdf)) return 1.0F;
   const float a = pdf * pdf, b = other * other;
   return a > 0.0F ? a / (a + b) : 0.0F;
 }
 
-/// One path on its way from the eye.
+/// A path as far as it has come. It begins as one strand; where clear glass both mirrors and transmits it becomes two.
+struct Strand {
+  Sampler sampler;
+  PathState state;
+  PathClass events;
+  vec3 throughput{1.0F};             ///< without the weight of its wavelengths
+  vec3 irradiance_throughput{0.0F};  ///< the same from the first diffuse event on, with cosine instead of BSDF there
+  float split_share = 1.0F;          ///< of the path, after all splits
+  vec3 vertex{0.0F};                 ///< of the last event, or the eye
+  bool previous_is_delta = true;
+  float previous_pdf = 0.0F;
+};
+
+/// One path on its way from the eye, with all of its strands.
 class EyePath {
  public:
   EyePath(const ReferenceWorld& world, const LayerNeeds& needs, const GatheredPhotons* photons,
           const PhotonPaths& gathered, const PhotonPaths& left, const Manifold* manifold, Film& film,
-          PathCounters& counters, std::size_t pixel, Sampler sampler, Sampler walk_sampler)
+          PathCounters& counters, std::size_t pixel, std::uint32_t sample)
       : world_(world),
         needs_(needs),
         photons_(photons),
@@ -33,63 +54,78 @@ class EyePath {
         film_(film),
         counters_(counters),
         pixel_(pixel),
-        sampler_(sampler),
-        walk_sampler_(walk_sampler) {}
+        sample_(sample),
+        walk_sampler_(makeSampler(kWalkSeedOffset)),
+        strand_{makeSampler(0)} {}
 
-  void trace(vec2 film_position) {
-    state_.ray = world_.camera_model.rayThrough(film_position);
-    vertex_ = state_.ray.origin;
-    state_.interior = world_.camera_interior;
-    eye_ior_ = iorOf(state_.interior.medium(), 0.0F);
-    // Panes and holes are no events; the limit on steps keeps two facing panes from holding a path for ever.
-    for (int step = 0; step < 4 * world_.options.max_bounces; ++step) {
-      if (!advance() || !scatter()) return;
+  void trace(vec2 pixel_corner) {
+    strand_.state.ray = world_.camera_model.rayThrough(pixel_corner + strand_.sampler.next2D());
+    strand_.vertex = strand_.state.ray.origin;
+    strand_.state.interior = world_.camera_interior;
+    eye_ior_ = iorOf(strand_.state.interior.medium(), 0.0F);
+    traceStrand();
+    while (!waiting_.empty()) {
+      strand_ = waiting_.back();
+      waiting_.pop_back();
+      traceStrand();
     }
   }
 
  private:
+  Sampler makeSampler(std::uint32_t seed_offset) const {
+    return {world_.options.seed + seed_offset, static_cast<std::uint32_t>(pixel_), sample_};
+  }
+
+  void traceStrand() {
+    // Panes and holes are no events; the limit on steps keeps two facing panes from holding a path for ever.
+    for (int step = 0; step < 4 * world_.options.max_bounces; ++step)
+      if (!advance() || !scatter()) return;
+  }
+
   /// To the next surface; adds the light met on the way. @return false if the path ends
   bool advance() {
-    const Ray whole = state_.ray;
-    world_.walker.advance(state_, sampler_, encounter_, class_.count() == 0);
+    const Ray whole = strand_.state.ray;
+    world_.walker.advance(strand_.state, strand_.sampler, encounter_, strand_.events.count() == 0);
     counters_.rays += encounter_.rays;
     if (encounter_.overflow) return false;
-    world_.lights.visitSpheres(vertex_, whole, encounter_.distance, [&](const LightSet::Met& met) { addMet(met); });
-    throughput_ *= encounter_.transmittance;
-    irradiance_throughput_ *= encounter_.transmittance;
+    world_.lights.visitSpheres(strand_.vertex, whole, encounter_.distance,
+                               [&](const LightSet::Met& met) { addMet(met); });
+    strand_.throughput *= encounter_.transmittance;
+    strand_.irradiance_throughput *= encounter_.transmittance;
     if (!encounter_.hit) {
-      world_.lights.visitInfinity(state_.ray.dir, [&](const LightSet::Met& met) { addMet(met); });
+      world_.lights.visitInfinity(strand_.state.ray.dir, [&](const LightSet::Met& met) { addMet(met); });
       return false;
     }
-    const LightSet::Met met = world_.lights.metSurface(vertex_, encounter_.point, state_.ray.dir);
+    const LightSet::Met met = world_.lights.metSurface(strand_.vertex, encounter_.point, strand_.state.ray.dir);
     if (maxComponent(met.radiance) > 0.0F) addMet(met);
-    return maxComponent(glm::abs(throughput_)) > 0.0F;
+    return maxComponent(glm::abs(strand_.throughput)) > 0.0F;
   }
 
   void addMet(const LightSet::Met& met) {
-    const float weight = previous_is_delta_ ? 1.0F : powerHeuristic(previous_pdf_, met.pdf);
-    add(class_, throughput_ * met.radiance * weight, irradiance_throughput_ * met.radiance * weight);
+    const float weight = strand_.previous_is_delta ? 1.0F : powerHeuristic(strand_.previous_pdf, met.pdf);
+    add(strand_.events, strand_.throughput * met.radiance * weight,
+        strand_.irradiance_throughput * met.radiance * weight);
   }
 
   /// @return false if the path ends
   bool scatter() {
-    const vec3 wo = -state_.ray.dir;
-    drawWavelength(state_, encounter_, world_.options.spectral, sampler_);
-    const float ior_from = iorOf(encounter_.boundary.from, state_.wavelength_nm);
-    const float ior_to = iorOf(encounter_.boundary.to, state_.wavelength_nm);
+    const vec3 wo = -strand_.state.ray.dir;
+    drawWavelength(strand_.state, encounter_, world_.options.spectral, strand_.sampler);
+    const float ior_from = iorOf(encounter_.boundary.from, strand_.state.wavelength_nm);
+    const float ior_to = iorOf(encounter_.boundary.to, strand_.state.wavelength_nm);
     const Bsdf bsdf(*encounter_.material, encounter_.point, wo, ior_from, ior_to, world_.options.specular_alpha);
-    if (!bsdf.isClear()) settleWavelength(state_, encounter_);
+    if (!bsdf.isClear()) settleWavelength(strand_.state, encounter_);
     for (const EventClass c : {EventClass::kSpecular, EventClass::kDiffuse})
-      if (bsdf.isEvaluable(c) && isWanted(class_.with(c))) connectToLight(bsdf, c);
+      if (bsdf.isEvaluable(c) && isWanted(strand_.events.with(c))) connectToLight(bsdf, c);
     if (photons_ && bsdf.hasDiffuse()) gather(bsdf);
     if (manifold_ && bsdf.hasDiffuse() && wantsWalk()) walkToLight(bsdf);
     return sampleNext(bsdf);
   }
 
   void gather(const Bsdf& bsdf) {
-    if (class_.count() == 0 ? gathered_.caustic : gathered_.specular_caustic && class_.isEyeSpecular())
+    if (strand_.events.count() == 0 ? gathered_.caustic : gathered_.specular_caustic && strand_.events.isEyeSpecular())
       gatherCaustic(bsdf);
-    if (gathered_.specular_indirect && class_.isEyeSpecular()) gatherIndirect(bsdf);
+    if (gathered_.specular_indirect && strand_.events.isEyeSpecular()) gatherIndirect(bsdf);
   }
 
   /// What kernels about a point say of it.
@@ -101,14 +137,14 @@ class EyePath {
   Gathered gatherFrom(const KernelMap& map, const Bsdf& bsdf) {
     const SurfacePoint& point = encounter_.point;
     Gathered found;
-    const bool seen_directly = class_.count() == 0;
+    const bool seen_directly = strand_.events.count() == 0;
     map.visitKernels(point.position, point.normal_geometric, [&](const KernelPhoton& photon, float distance_squared) {
       const vec3 wi = -photon.dir, incident = photon.flux * (photon.inverse_area * bsdf.shadingCosineRatio(wi));
       const vec3 value = incident * bsdf.evaluate(EventClass::kDiffuse, wi, Transport::kRadiance).f;
       found.radiance += value;
       if (distance_squared <= 0.5F * photon.radius_squared) found.inner += value;
       // As for light that is connected to the camera: on the side that the eye sees.
-      if (seen_directly && dot(wi, point.normal_geometric) * dot(state_.ray.dir, point.normal_geometric) < 0.0F)
+      if (seen_directly && dot(wi, point.normal_geometric) * dot(strand_.state.ray.dir, point.normal_geometric) < 0.0F)
         found.irradiance += incident;
     });
     return found;
@@ -118,13 +154,13 @@ class EyePath {
     const KernelMap& map = photons_->caustics();
     if (map.empty()) return;
     const Gathered found = gatherFrom(map, bsdf);
-    record(class_.with(EventClass::kDiffuse).with(EventClass::kSpecular), throughput_ * found.radiance,
+    record(strand_.events.with(EventClass::kDiffuse).with(EventClass::kSpecular), strand_.throughput * found.radiance,
            found.irradiance);
-    FilmPlane& plane = class_.count() == 0 ? film_.caustic_bias : film_.specular_caustic_bias;
+    FilmPlane& plane = strand_.events.count() == 0 ? film_.caustic_bias : film_.specular_caustic_bias;
     if (!plane.active()) return;
     // Where light varies smoothly a kernel errs in proportion to its area at most (Knaus & Zwicker 2011), so by twice
     // what the whole says more than its half.
-    const vec3 bias = 2.0F * state_.hero.weight * throughput_ * (found.radiance - 2.0F * found.inner);
+    const vec3 bias = 2.0F * strand_.state.hero.weight * strand_.throughput * (found.radiance - 2.0F * found.inner);
     if (isFinite(bias)) plane.add(pixel_, bias);
   }
 
@@ -132,23 +168,24 @@ class EyePath {
     const KernelMap& map = photons_->indirect();
     if (map.empty()) return;
     const PathClass path =
-        class_.with(EventClass::kDiffuse).with(EventClass::kDiffuse).with(EventClass::kSpecular);  // for one
-    record(path, throughput_ * gatherFrom(map, bsdf).radiance, vec3(0.0F));
+        strand_.events.with(EventClass::kDiffuse).with(EventClass::kDiffuse).with(EventClass::kSpecular);  // for one
+    record(path, strand_.throughput * gatherFrom(map, bsdf).radiance, vec3(0.0F));
   }
 
   bool wantsWalk() const {
-    if (class_.isEyeSpecular()) return needs_.throughSpecular();
-    return class_.count() == 0 && (needs_.caustic || needs_.irradiance || needs_.irradiance_caustic);
+    if (strand_.events.isEyeSpecular()) return needs_.throughSpecular();
+    return strand_.events.count() == 0 && (needs_.caustic || needs_.irradiance || needs_.irradiance_caustic);
   }
   void walkToLight(const Bsdf& bsdf) {
-    const auto light = manifold_->estimate(encounter_, state_.interior, -state_.ray.dir, walk_sampler_, counters_.rays);
+    const auto light =
+        manifold_->estimate(encounter_, strand_.state.interior, -strand_.state.ray.dir, walk_sampler_, counters_.rays);
     if (!light) return;
     const vec3 incident = light->irradiance * bsdf.shadingCosineRatio(light->wi);
     const vec3 radiance = incident * bsdf.evaluate(EventClass::kDiffuse, light->wi, Transport::kRadiance).f;
     const vec3 normal = encounter_.point.normal_geometric;
-    const bool seen_side = dot(light->wi, normal) * dot(state_.ray.dir, normal) < 0.0F;
-    record(class_.with(EventClass::kDiffuse).with(EventClass::kSpecular), throughput_ * radiance,
-           class_.count() == 0 && seen_side ? incident : vec3(0.0F));
+    const bool seen_side = dot(light->wi, normal) * dot(strand_.state.ray.dir, normal) < 0.0F;
+    record(strand_.events.with(EventClass::kDiffuse).with(EventClass::kSpecular), strand_.throughput * radiance,
+           strand_.events.count() == 0 && seen_side ? incident : vec3(0.0F));
   }
 
   /// Can a path that begins with these events still end in a layer that was asked for?
@@ -167,8 +204,8 @@ class EyePath {
   }
 
   void connectToLight(const Bsdf& bsdf, EventClass c) {
-    const float u_choice = sampler_.next1D();
-    const auto light = world_.lights.sample(encounter_.point.position, u_choice, sampler_.next2D());
+    const float u_choice = strand_.sampler.next1D();
+    const auto light = world_.lights.sample(encounter_.point.position, u_choice, strand_.sampler.next2D());
     if (!light) return;
     const BsdfValue value = bsdf.evaluate(c, light->dir, Transport::kRadiance);
     const float cos_theta = std::abs(dot(light->dir, bsdf.normal()));
@@ -179,62 +216,112 @@ class EyePath {
     const float p_class = c == EventClass::kSpecular ? bsdf.specularProbability() : 1.0F - bsdf.specularProbability();
     const float weight = light->delta ? 1.0F : powerHeuristic(light->pdf, p_class * value.pdf);
     const vec3 incident = visible * light->radiance * (cos_theta * weight / light->pdf);
-    const PathClass path = class_.with(c);
-    const vec3 irradiance = path.count() == 1 ? incident : irradiance_throughput_ * value.f * incident;
-    add(path, throughput_ * value.f * incident, irradiance);
+    const PathClass path = strand_.events.with(c);
+    const vec3 irradiance = path.count() == 1 ? incident : strand_.irradiance_throughput * value.f * incident;
+    add(path, strand_.throughput * value.f * incident, irradiance);
   }
 
   /// The medium on the side of the surface that `dir` leaves to.
   const Material* mediumTowards(vec3 dir) const {
     const bool same_side = (dot(dir, encounter_.point.normal_geometric) > 0.0F) ==
-                           (dot(state_.ray.dir, encounter_.point.normal_geometric) < 0.0F);
+                           (dot(strand_.state.ray.dir, encounter_.point.normal_geometric) < 0.0F);
     return same_side ? encounter_.boundary.from : encounter_.boundary.to;
   }
 
   bool sampleNext(const Bsdf& bsdf) {
+    if (splits(bsdf)) return followBoth(bsdf);
     const float p_specular = bsdf.specularProbability();
-    const bool specular = p_specular > 0.0F && sampler_.next1D() < p_specular;
+    const bool specular = p_specular > 0.0F && strand_.sampler.next1D() < p_specular;
     const EventClass c = specular ? EventClass::kSpecular : EventClass::kDiffuse;
     const float p_class = specular ? p_specular : 1.0F - p_specular;
-    const vec2 u = sampler_.next2D();
-    const auto s = bsdf.sample(c, u, sampler_.next1D(), Transport::kRadiance);
+    const vec2 u = strand_.sampler.next2D();
+    const auto s = bsdf.sample(c, u, strand_.sampler.next1D(), Transport::kRadiance);
+    return s && follow(bsdf, c, *s, p_class, true);
+  }
+
+  /// Does clear glass send the path both ways? Where one of them brings next to nothing chance decides.
+  bool splits(const Bsdf& bsdf) const {
+    if (!bsdf.isClear()) return false;
+    const float mirrored = mirroredShare(bsdf);
+    return share() * std::min(mirrored, 1.0F - mirrored) >= kLeastShare;
+  }
+  /// Several wavelengths aboard must agree on whether they are split: they go by the index at the d line.
+  float mirroredShare(const Bsdf& bsdf) const {
+    if (!strand_.state.hero.open) return bsdf.mirroring().probability;
+    const Interface& boundary = encounter_.boundary;
+    const Bsdf at_d_line(*encounter_.material, encounter_.point, -strand_.state.ray.dir, iorOf(boundary.from, 0.0F),
+                         iorOf(boundary.to, 0.0F), world_.options.specular_alpha);
+    return at_d_line.mirroring().probability;
+  }
+
+  /// The path goes on as what is transmitted, and what is mirrored waits.
+  /// @return false if nothing is transmitted
+  bool followBoth(const Bsdf& bsdf) {
+    const Strand before = strand_;
+    const float mirrored = bsdf.mirroring().probability, mirrored_share = mirroredShare(bsdf);
+    if (mirrored > 0.0F && followWay(bsdf, 0.0F, mirrored_share)) waiting_.push_back(strand_);
+    if (mirrored >= 1.0F) return false;
+    strand_ = before;
+    strand_.sampler = makeSampler(++split_count_ * kSplitSeedOffset);
+    return followWay(bsdf, kOneMinusEpsilon, 1.0F - mirrored_share);
+  }
+  /// @param u_lobe  the number by which chance would have taken this way  @param share  of this way
+  bool followWay(const Bsdf& bsdf, float u_lobe, float share) {
+    auto s = bsdf.sample(EventClass::kSpecular, vec2(0.0F), u_lobe, Transport::kRadiance);
     if (!s) return false;
-    followWavelengths(state_, encounter_, -state_.ray.dir, world_.options.specular_alpha, s->transmitted);
-    throughput_ *= s->weight / p_class;
-    irradiance_throughput_ *= s->weight / p_class;
-    if (!s->pass) {
-      if (!recordEvent(bsdf, c, *s, p_class)) return false;
-      vertex_ = encounter_.point.position;
-      previous_is_delta_ = s->delta;
-      previous_pdf_ = p_class * s->pdf;
+    s->weight *= s->probability;
+    strand_.split_share *= share;
+    return follow(bsdf, EventClass::kSpecular, *s, 1.0F, false);
+  }
+
+  /// @param by_chance  else all ways are followed  @return false if the strand ends
+  bool follow(const Bsdf& bsdf, EventClass c, const BsdfSample& s, float p_class, bool by_chance) {
+    followWavelengths(strand_.state, encounter_, -strand_.state.ray.dir, world_.options.specular_alpha, s.transmitted,
+                      by_chance);
+    strand_.throughput *= s.weight / p_class;
+    strand_.irradiance_throughput *= s.weight / p_class;
+    if (!s.pass) {
+      if (!recordEvent(bsdf, c, s, p_class)) return false;
+      strand_.vertex = encounter_.point.position;
+      strand_.previous_is_delta = s.delta;
+      strand_.previous_pdf = p_class * s.pdf;
     }
-    if (!updateInterior(world_.scene, encounter_, s->transmitted, state_.interior)) return false;
-    state_.ray = Ray{offsetOrigin(encounter_.point, s->dir), s->dir};
+    if (!updateInterior(world_.scene, encounter_, s.transmitted, strand_.state.interior)) return false;
+    strand_.state.ray = Ray{offsetOrigin(encounter_.point, s.dir), s.dir};
     return survives();
   }
 
   bool recordEvent(const Bsdf& bsdf, EventClass c, const BsdfSample& s, float p_class) {
-    class_.add(c);
-    if (class_.count() == 1 && class_.firstIsDiffuse()) {
+    strand_.events.add(c);
+    if (strand_.events.count() == 1 && strand_.events.firstIsDiffuse()) {
       // Irradiance takes the cosine in the place of the BSDF, on the side that the eye sees.
       const float cos_theta = dot(s.dir, bsdf.normal());
-      irradiance_throughput_ = vec3(s.delta || s.pdf <= 0.0F ? 0.0F : std::max(cos_theta, 0.0F) / (s.pdf * p_class));
+      strand_.irradiance_throughput =
+          vec3(s.delta || s.pdf <= 0.0F ? 0.0F : std::max(cos_theta, 0.0F) / (s.pdf * p_class));
     }
-    return class_.count() < world_.options.max_bounces && mayContribute(class_);
+    return strand_.events.count() < world_.options.max_bounces && mayContribute(strand_.events);
+  }
+
+  /// Of what a path could bring when it began, the strand's share. Radiance over the squared index is what refraction
+  /// keeps.
+  float share() const {
+    // With other wavelengths aboard, chance must not depend on which of them is the hero.
+    const HeroWavelengths& hero = strand_.state.hero;
+    const float ior = iorOf(strand_.state.interior.medium(), hero.open ? 0.0F : strand_.state.wavelength_nm);
+    const float kept =
+        std::max(maxComponent(glm::abs(strand_.throughput)), maxComponent(glm::abs(strand_.irradiance_throughput)));
+    return kept * (hero.open ? hero.meanOverHero() : 1.0F) * ior * ior / (eye_ior_ * eye_ior_);
   }
 
   bool survives() {
-    if (class_.count() < kRouletteStart) return true;
-    // A path that has lost nothing is not ended: glass that keeps all its light stays free of this noise. Radiance over
-    // the squared index is what refraction keeps.
-    // With other wavelengths aboard, chance must not depend on which of them is the hero.
-    const float ior = iorOf(state_.interior.medium(), state_.hero.open ? 0.0F : state_.wavelength_nm);
-    const float kept = std::max(maxComponent(glm::abs(throughput_)), maxComponent(glm::abs(irradiance_throughput_)));
-    const float q = kept * ior * ior / (eye_ior_ * eye_ior_);
+    if (strand_.events.count() < kRouletteStart) return true;
+    // A strand that has lost nothing but what its siblings took is not ended: glass that keeps all its light stays free
+    // of this noise.
+    const float q = share() / strand_.split_share;
     if (q >= 1.0F) return true;
-    if (q <= 0.0F || sampler_.next1D() >= q) return false;
-    throughput_ /= q;
-    irradiance_throughput_ /= q;
+    if (q <= 0.0F || strand_.sampler.next1D() >= q) return false;
+    strand_.throughput /= q;
+    strand_.irradiance_throughput /= q;
     return true;
   }
 
@@ -244,8 +331,8 @@ class EyePath {
   }
 
   void record(const PathClass& path, vec3 radiance, vec3 irradiance) {
-    radiance *= state_.hero.weight;
-    irradiance *= state_.hero.weight;
+    radiance *= strand_.state.hero.weight;
+    irradiance *= strand_.state.hero.weight;
     if (!isFinite(radiance) || !isFinite(irradiance)) {
       ++counters_.not_finite;
       return;
@@ -284,15 +371,12 @@ class EyePath {
   Film& film_;
   PathCounters& counters_;
   std::size_t pixel_;
-  Sampler sampler_, walk_sampler_;
-  PathState state_;
+  std::uint32_t sample_;
+  Sampler walk_sampler_;
+  Strand strand_;                ///< on its way
+  std::vector<Strand> waiting_;  ///< where the path became two
+  std::uint32_t split_count_ = 0;
   Encounter encounter_;
-  PathClass class_;
-  vec3 throughput_{1.0F};             ///< without the weight of its wavelengths
-  vec3 irradiance_throughput_{0.0F};  ///< the same from the first diffuse event on, with cosine instead of BSDF there
-  vec3 vertex_{0.0F};                 ///< of the last event, or the eye
-  bool previous_is_delta_ = true;
-  float previous_pdf_ = 0.0F;
   float eye_ior_ = 1.0F;  ///< of the medium around the eye
 };
 
@@ -300,11 +384,8 @@ class EyePath {
 
 void PathTracer::tracePath(int x, int y, std::uint32_t sample, Film& film, PathCounters& counters) const {
   const auto pixel = static_cast<std::size_t>(y) * film.width + x;
-  Sampler sampler(world_.options.seed, static_cast<std::uint32_t>(pixel), sample);
-  const vec2 jitter = sampler.next2D();
-  const Sampler walk_sampler(world_.options.seed + kWalkSeedOffset, static_cast<std::uint32_t>(pixel), sample);
-  EyePath path(world_, needs_, photons_, gathered_, left_, manifold_, film, counters, pixel, sampler, walk_sampler);
-  path.trace(vec2(static_cast<float>(x), static_cast<float>(y)) + jitter);
+  EyePath path(world_, needs_, photons_, gathered_, left_, manifold_, film, counters, pixel, sample);
+  path.trace(vec2(static_cast<float>(x), static_cast<float>(y)));
 }
 
 }  // namespace nephroid

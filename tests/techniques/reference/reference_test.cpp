@@ -142,6 +142,27 @@ TEST(Reference, WhatCausticsLightSeenThroughGlassIsTheSameWithAndWithoutIndirect
   EXPECT_NEAR(alone / along, 1.0, 0.01);
 }
 
+TEST(Reference, GlassMirrorsWithoutLeavingItToChance) {
+  // A slab under a lamp over nothing, seen from above: the first face mirrors R, the second R as well, and so on:
+  // R + T²R + T²R³ + … = 2R/(1 + R) in all. Each path must see the first two; by chance it would be one in thirteen.
+  SceneData scene;
+  addObject(scene, makeBox("slab", dvec3(-3, -0.5, -3), dvec3(3, 0, 3)), makeGlass(1.5F));
+  addObject(scene, makeRectangle("lamp", dvec3(0, 4, 0), dvec3(2.5, 0, 0), dvec3(0, 0, 2.5)), makeLamp(vec3(5.0F)));
+  const Camera down = makeCamera("down", vec3(0, 2, 0), vec3(0), radians(4));
+  const RenderResult render = renderReference(scene, down, makeSettings(16, 1, 1, {"specular"}));
+  const Image& image = render.image.layers[0].image;
+  const double reflectance = 0.04, expected = 5.0 * 2.0 * reflectance / (1.0 + reflectance);
+  double sum = 0.0, squares = 0.0;
+  for (int y = 0; y < 16; ++y) {
+    for (int x = 0; x < 16; ++x) {
+      const double value = image.rgb(x, y).x / expected;
+      sum += value / 256.0, squares += value * value / 256.0;
+    }
+  }
+  EXPECT_NEAR(sum, 1.0, 0.03);
+  EXPECT_LT(std::sqrt(squares - sum * sum), 0.15);
+}
+
 TEST(Reference, SunWithASizeAgreesBetweenEstimators) {
   SceneData scene = test::makeBallScene(makeMetal(vec3(0.9F)), 256);
   scene.lights.push_back(test::makeSun(vec3(-0.4F, -1, -0.2F), vec3(3.0F), 60.0F));
