@@ -10,8 +10,8 @@
 
 layout(local_size_x = 64) in;
 layout(set = 0, binding = 7) uniform usamplerBuffer view_table;
-// Light by light; of each, fine cells view by view, then coarse cells, then marks of the coarse cells in whose fine ones there
-// is something.
+// Light by light; of each, fine cells view by view, then coarse cells, then marks of the coarse cells in whose fine ones
+// there is something.
 layout(set = 0, binding = 8, r32ui) uniform uimageBuffer heads;
 layout(set = 0, binding = 9, rgba32ui) writeonly uniform uimageBuffer nodes;
 layout(scalar, set = 0, binding = 10) buffer Counters { uint node_counts[]; };  // by light

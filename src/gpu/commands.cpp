@@ -249,11 +249,6 @@ void PassCommands::clear(const Image& image, const VkClearColorValue& value) {
   device_.api().CmdClearColorImage(commands_, image.handle(), VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL, &value, 1, &range);
 }
 
-void PassCommands::clearLayer(const Image& image, std::uint32_t layer, const VkClearColorValue& value) {
-  const VkImageSubresourceRange range{image.aspect(), 0, image.desc().mips, layer, 1};
-  device_.api().CmdClearColorImage(commands_, image.handle(), VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL, &value, 1, &range);
-}
-
 // ------------------------------------------------------------------------------------------------ CommandRecorder
 
 CommandRecorder::CommandRecorder(Device& device) : device_(device) {

@@ -106,7 +106,6 @@ class PassCommands {
   void blit(const Image& from, const Image& to);
   void fill(const Buffer& buffer, std::uint32_t value, VkDeviceSize offset = 0, VkDeviceSize bytes = VK_WHOLE_SIZE);
   void clear(const Image& image, const VkClearColorValue& value);
-  void clearLayer(const Image& image, std::uint32_t layer, const VkClearColorValue& value);
 
   VkCommandBuffer handle() const { return commands_; }
 
