@@ -1,7 +1,7 @@
 // What the frame's shaders and C++ both see: the scene's tables, cameras and lights.
 //
-// Tables are images of four words a texel (frame/tables.glsl), because software devices read an image ten times as fast
-// as a buffer. A record here is what C++ writes, word for word; its size is a multiple of 16 bytes.
+// Tables are buffers that are fetched in texels of four words (frame/tables.glsl), which software devices do ten times
+// as fast as word by word. A record here is what C++ writes, word for word; its size is a multiple of 16 bytes.
 #ifndef NEPHROID_FRAME_SHARED_H
 #define NEPHROID_FRAME_SHARED_H
 

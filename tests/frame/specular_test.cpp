@@ -4,6 +4,7 @@
 
 #include "core/optics/fresnel.shared.h"
 #include "frame/frame.h"
+#include "frame/triangle_tree.h"
 #include "scene/load.h"
 #include "support/gpu_fixture.h"
 #include "support/tiny_scenes.h"
@@ -361,6 +362,26 @@ TEST_F(SpecularTest, WhatLiesBetweenConverges) {
     const double all = test::meanOf(means[0]).x;
     EXPECT_NEAR(test::meanOf(means[1]).x, all, 0.005 * all) << name;
     EXPECT_LT(shareDisplaced(means[1], means[0], 1), 0.02) << name;
+  }
+}
+
+TEST_F(SpecularTest, IsTheSameHoweverTheTreeIsKept) {
+  // What is a hundred kilometres away widens the grid of the tree's boxes until they are kept as floats; if it has very
+  // many triangles, the tree also has one order for all directions. Neither is seen.
+  const SceneData near = loadScene("builtin:sphere?segments=32");
+  const Image expected = render(near, near.cameras[0], 48, 2);
+  for (const char* name : {"builtin:sphere?segments=8", "builtin:sphere?segments=650"}) {
+    SceneData scene = near;
+    const SceneData far = loadScene(name);
+    const auto most = [](const Mesh& a, const Mesh& b) { return a.triangles.size() < b.triangles.size(); };
+    Mesh ball = *std::ranges::max_element(far.meshes, most);
+    for (vec3& p : ball.positions) p.x += 1e5F;
+    test::addObject(scene, ball, test::makeDiffuse(vec3(0.5F)));
+    const TreeTables tables = makeTreeTables(scene, buildBoxTree);
+    ASSERT_FALSE(tables.compact);
+    ASSERT_EQ(tables.order_count, ball.triangles.size() > 400'000 ? 1U : 8U);
+    const Image image = render(scene, near.cameras[0], 48, 2);
+    for (std::size_t i = 0; i < expected.pixels.size(); ++i) ASSERT_FLOAT_EQ(image.pixels[i], expected.pixels[i]) << i;
   }
 }
 
