@@ -53,6 +53,9 @@ struct Device {
   VkDevice device = VK_NULL_HANDLE;
   VkQueue queue = VK_NULL_HANDLE;
   std::uint32_t queue_family = 0;
+  /// Made with the features shaderInt64 and shaderBufferInt64Atomics: a device that is a CPU then draws fine meshes
+  /// faster. Others do not need it.
+  bool int64_atomics = false;
 };
 
 /// Two-dimensional, one layer, one mip, one sample, exclusive to the queue's family. Not owned; must live until the

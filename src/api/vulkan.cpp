@@ -66,7 +66,7 @@ gpu::ForeignDevice checkDevice(const Device& d) {
     throw UsageError("a Vulkan device needs vkGetInstanceProcAddr, instance, physical device, device and queue");
   const auto missing = Requirements().missing(d.get_instance_proc_addr, d.instance, d.physical);
   if (!missing.empty()) throw DeviceError(fmt::format("the Vulkan device lacks {}", fmt::join(missing, ", ")));
-  return {d.get_instance_proc_addr, d.instance, d.physical, d.device, d.queue, d.queue_family};
+  return {d.get_instance_proc_addr, d.instance, d.physical, d.device, d.queue, d.queue_family, d.int64_atomics};
 }
 
 const Technique& checkTechnique(const std::string& name) {

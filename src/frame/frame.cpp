@@ -116,12 +116,13 @@ RealtimeFrame::~RealtimeFrame() = default;
 
 void RealtimeFrame::makeTargets() {
   constexpr VkImageUsageFlags kDrawn = VK_IMAGE_USAGE_COLOR_ATTACHMENT_BIT | VK_IMAGE_USAGE_SAMPLED_BIT;
-  seen_ = makePixels(device_, settings_, kSeenFormat, kDrawn, "seen");
-  depth_ = makePixels(device_, settings_, kDepthFormat, VK_IMAGE_USAGE_DEPTH_STENCIL_ATTACHMENT_BIT, "depth");
+  seen_ = makePixels(device_, settings_, kSeenFormat, kDrawn | VK_IMAGE_USAGE_STORAGE_BIT, "seen");
+  depth_ = makePixels(device_, settings_, kDepthFormat,
+                      VK_IMAGE_USAGE_DEPTH_STENCIL_ATTACHMENT_BIT | VK_IMAGE_USAGE_SAMPLED_BIT, "depth");
   raster_.reset();
   if (chooseRasteriser(settings_.rasteriser, device_, *buffers_, settings_.width, settings_.height) !=
       Rasteriser::kHardware)
-    raster_ = std::make_unique<ComputeRaster>(device_, *buffers_, settings_.width, settings_.height);
+    raster_ = std::make_unique<ComputeRaster>(device_, recorder_, *buffers_, settings_.width, settings_.height);
   if (buffers_->traits().passable) {
     tint_ = makePixels(device_, settings_, kFloat4, kDrawn, "tint");
   } else if (!tint_.valid()) {

@@ -5,10 +5,12 @@
 #define NEPHROID_RASTER_GLSL
 
 #extension GL_EXT_control_flow_attributes : require
+#extension GL_EXT_shader_atomic_int64 : require
+#extension GL_EXT_shader_explicit_arithmetic_types_int64 : require
 #include "frame/raster.shared.h"
 #include "frame/tables.glsl"
 
-layout(scalar, set = 0, binding = 7) buffer Depths { uint depths[]; };      // by pixel: the bits of the nearest
+layout(scalar, set = 0, binding = 7) buffer Keys { uint64_t keys[]; };      // by pixel, of the nearest: makeKey
 layout(scalar, set = 0, binding = 8) buffer Counts { uint counts[]; };      // by list: kCount…
 layout(scalar, set = 0, binding = 9) buffer Parts { RasterPart parts[]; };  // from part_capacity on whole triangles
 layout(scalar, set = 0, binding = 10) buffer Items { uint items[]; };       // by list: triangles, or places in `parts`
@@ -203,14 +205,13 @@ FilmTriangle projectPart(RasterPart part) {
 
 uint countOf(uint list, uint kind) { return kCounts * list + kind; }
 
-/// Leaves the nearest depth at each pixel. @return whether it is the triangle's at any: it may be seen
-bool drawDepths(FilmTriangle t) {
-  bool may_be_seen = false;
-  for (ivec2 p = findCovered(t, t.first); p.y <= t.last.y; p = findCovered(t, nextPixel(t, p))) {
-    uint depth = depthAt(t, p);
-    if (atomicMax(depths[indexOf(p)], depth) <= depth) may_be_seen = true;
-  }
-  return may_be_seen;
+/// The nearer the larger; of equally near triangles the first in number.
+uint64_t makeKey(uint depth, uint number) { return packUint2x32(uvec2(~number, depth)); }
+
+/// Leaves the key of the nearest triangle at each pixel. @param number  of the triangle, counted through all draws
+void draw(FilmTriangle t, uint number) {
+  for (ivec2 p = findCovered(t, t.first); p.y <= t.last.y; p = findCovered(t, nextPixel(t, p)))
+    atomicMax(keys[indexOf(p)], makeKey(depthAt(t, p), number));
 }
 
 #endif

@@ -1,15 +1,16 @@
 // A rasteriser in compute, for devices that are CPUs: their drivers run compute on all cores and vertices on one.
 //
-// It draws fine meshes over a picture that the hardware's rasteriser has begun. A thread a triangle leaves the nearest
-// depth of each pixel in a buffer and notes itself if it came nearest anywhere; those few go over their pixels again
-// and write who they are where the depth is theirs. Triangles of many pixels are drawn in parts. What is seen does not
-// depend on the order of threads.
+// It draws fine meshes over a picture that the hardware's rasteriser has begun. A thread a triangle leaves its depth and
+// its number in each pixel that it covers, as one word of 64 bits of which the largest stays; a last pass tells who is
+// seen. Triangles of many pixels are drawn in parts. What is seen does not depend on the order of threads.
 #pragma once
 
 #include <array>
 #include <cstdint>
+#include <span>
 #include <vector>
 
+#include "frame/raster.shared.h"
 #include "frame/scene_buffers.h"
 #include "gpu/commands.h"
 
@@ -35,11 +36,17 @@ struct DrawSplit {
 DrawSplit splitDraws(const ViewRecord& view, const std::vector<SceneBuffers::Draw>& draws, std::uint32_t pixel_count,
                      Rasteriser rasteriser);
 
+/// Pixels of a picture, the last ones included.
+struct PixelBox {
+  glm::ivec2 first, last;
+};
+
 /// Not thread-safe. Device and buffers must outlive it.
 class ComputeRaster {
  public:
-  /// @throws ResourceError
-  ComputeRaster(gpu::Device& device, const SceneBuffers& buffers, int width, int height);
+  /// For devices with 64-bit atomics. Records the upload of a table. @throws ResourceError
+  ComputeRaster(gpu::Device& device, gpu::CommandRecorder& recorder, const SceneBuffers& buffers, int width,
+                int height);
 
   /// Draws instances over what is there.
   /// @param draws  of the scene, by index
@@ -49,12 +56,18 @@ class ComputeRaster {
               const gpu::Image& seen, const gpu::Image& depth);
 
  private:
+  void recordBegin(gpu::CommandRecorder& recorder, bool puts_off);
+  void recordSeen(gpu::CommandRecorder& recorder, RasterPush push, const PixelBox& box, const gpu::Image& seen,
+                  const gpu::Image& depth);
+  std::vector<gpu::Bound> bound(std::span<const gpu::Bound> more) const;
+
   const SceneBuffers& buffers_;
   std::uint32_t width_, height_;
-  gpu::ComputePipeline triangles_, split_, parts_;
-  std::array<gpu::ComputePipeline, 4> seen_passes_;
-  gpu::Buffer depths_, numbers_, seen_, counts_, part_list_, items_, overtaking_;
-  std::vector<std::uint32_t> first_numbers_;  ///< by draw; how many triangles there are in all
+  std::array<gpu::ComputePipeline, 2> triangles_;  ///< whether some may be put off
+  gpu::ComputePipeline split_, parts_, seen_pass_;
+  gpu::Buffer keys_, counts_, part_list_, items_, draw_table_;
+  std::vector<std::uint32_t> first_numbers_;  ///< by draw
+  bool has_begun_ = false;                    ///< keys_ is empty between pictures
 };
 
 }  // namespace nephroid

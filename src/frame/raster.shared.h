@@ -16,13 +16,15 @@ struct RasterPush {
   int size_y;
   float guard;  // corners this far from the film's middle are projected, in pixels
   uint part_capacity;
-  uint first_put_off;  // where the lists of triangles that were put off begin
-  uint part_list;      // the list of all parts
+  uint part_list;  // the list of all parts
+  uint draw_count;
+  int first_x;  // the pixel from which on there may be something
+  int first_y;
   // Of the draw, or of all parts.
   uint instance;
   uint triangle_count;
   uint list;
-  uint first_number;  // of its triangles, counted through all draws; where its own items begin
+  uint first_number;  // of its triangles, counted through all draws
 };
 
 /// A triangle that was put off, or some rows of it.
@@ -34,14 +36,11 @@ struct RasterPart {
 };
 
 NEPHROID_CONST uint kAllRows = 0xFFFF0000u;
-NEPHROID_CONST uint kNoNumber = 0xFFFFFFFFu;
 
-// Each draw has lists of triangles, and all parts have some too. Their lengths, by list:
-NEPHROID_CONST uint kCountNearest = 0u;     // that may be seen
-NEPHROID_CONST uint kCountOvertaking = 1u;  // that were seen in the place of another, equally near
-NEPHROID_CONST uint kCountPutOff = 2u;      // of a draw: triangles too large for one thread; of parts: parts in all
-NEPHROID_CONST uint kCountWholes = 3u;      // of parts: triangles for whose parts there was no room
-NEPHROID_CONST uint kCounts = 4u;
+// Each draw has a list of triangles, and all parts have some too. Their lengths, by list:
+NEPHROID_CONST uint kCountPutOff = 0u;  // of a draw: triangles too large for one thread; of parts: parts in all
+NEPHROID_CONST uint kCountWholes = 1u;  // of parts: triangles for whose parts there was no room
+NEPHROID_CONST uint kCounts = 2u;
 
 NEPHROID_NAMESPACE_END
 

@@ -1,4 +1,4 @@
-// Depths of the triangles that were put off.
+// Draws the triangles that were put off.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_scalar_block_layout : require
@@ -11,8 +11,7 @@ void main() {
   uint count = several + counts[countOf(push.list, kCountWholes)];
   uint threads = gl_NumWorkGroups.x * gl_WorkGroupSize.x;
   for (uint i = gl_GlobalInvocationID.x; i < count; i += threads) {
-    uint item = i < several ? i : push.part_capacity + (i - several);
-    if (drawDepths(projectPart(parts[item])))
-      items[push.first_number + atomicAdd(counts[countOf(push.list, kCountNearest)], 1u)] = item;
+    RasterPart part = parts[i < several ? i : push.part_capacity + (i - several)];
+    draw(projectPart(part), part.number);
   }
 }

@@ -1,44 +1,38 @@
-// Which triangle each pixel sees, now that the nearest depths are known: of those equally near the first in number.
+// Which triangle each pixel sees, where one that was drawn here is no farther than what the hardware drew.
 //
-// Who finds a pixel claimed by a later number writes over it, but nobody knows whose write comes last. So all who
-// did that write once more, in a second run.
+// Leaves no keys behind: the next picture begins with none.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_scalar_block_layout : require
 #include "frame/raster.glsl"
 
 layout(local_size_x = 64) in;
-layout(constant_id = 5) const bool kOfParts = false;
-layout(constant_id = 6) const bool kSettles = false;
-layout(scalar, set = 0, binding = 11) buffer Overtaking { uint overtaking[]; };  // likewise
-layout(scalar, set = 0, binding = 12) buffer Numbers { uint numbers[]; };        // by pixel, of the triangle
-layout(scalar, set = 0, binding = 13) buffer Seen { uvec2 seen[]; };             // instance + 1, triangle
+layout(set = 0, binding = 11) uniform usamplerBuffer key_texels;              // keys, to be read
+layout(set = 0, binding = 12) uniform sampler2D depth_image;                  // of the hardware's
+layout(set = 0, binding = 13, rg32ui) writeonly uniform uimage2D seen_image;  // instance + 1, triangle
+layout(set = 0, binding = 14) uniform usamplerBuffer draw_texels;             // first number, instance
 
-void show(FilmTriangle t, uint item, uint number, uvec2 name) {
-  bool overtakes = false;
-  for (ivec2 p = findCovered(t, t.first); p.y <= t.last.y; p = findCovered(t, nextPixel(t, p))) {
-    uint depth = depthAt(t, p), index = indexOf(p);
-    if (depth != depths[index]) continue;
-    uint before = kSettles ? numbers[index] : atomicMin(numbers[index], number);
-    if (kSettles ? before == number : before > number) seen[index] = name;
-    if (before > number && before != kNoNumber) overtakes = true;
+/// @return  instance + 1, triangle
+uvec2 nameOf(uint number) {
+  uint first = 0u, end = push.draw_count;
+  uvec4 draw = texelFetch(draw_texels, 0);
+  while (end - first > 1u) {
+    uint middle = (first + end) / 2u;
+    uvec4 of_middle = texelFetch(draw_texels, int(middle));
+    bool is_before = of_middle.x <= number;
+    if (is_before) draw = of_middle;
+    first = is_before ? middle : first;
+    end = is_before ? end : middle;
   }
-  if (overtakes && !kSettles)
-    overtaking[push.first_number + atomicAdd(counts[countOf(push.list, kCountOvertaking)], 1u)] = item;
+  return uvec2(draw.y + 1u, number - draw.x);
 }
 
 void main() {
-  InstanceRecord instance = fetchInstance(push.instance);
-  uint count = counts[countOf(push.list, kSettles ? kCountOvertaking : kCountNearest)];
-  uint threads = gl_NumWorkGroups.x * gl_WorkGroupSize.x;
-  for (uint i = gl_GlobalInvocationID.x; i < count; i += threads) {
-    uint item = kSettles ? overtaking[push.first_number + i] : items[push.first_number + i];
-    if (kOfParts) {
-      RasterPart part = parts[item];
-      show(projectPart(part), item, part.number, uvec2(part.instance + 1u, part.triangle));
-    } else {
-      show(projectTriangle(fetchCorners(instance, item)), item, push.first_number + item,
-           uvec2(push.instance + 1u, item));
-    }
-  }
+  ivec2 pixel = ivec2(gl_GlobalInvocationID.xy) + ivec2(push.first_x, push.first_y);
+  if (pixel.x >= push.size_x || pixel.y >= push.size_y) return;
+  uvec2 key = texelFetch(key_texels, int(indexOf(pixel))).xy;
+  if (key == uvec2(0u)) return;
+  keys[indexOf(pixel)] = 0ul;
+  float depth = texelFetch(depth_image, pixel, 0).x;
+  if (uintBitsToFloat(key.y) >= depth) imageStore(seen_image, pixel, uvec4(nameOf(~key.x), 0u, 0u));
 }

@@ -29,7 +29,7 @@ void main() {
   uint count = counts[countOf(push.list, kCountPutOff)];
   uint threads = gl_NumWorkGroups.x * gl_WorkGroupSize.x;
   for (uint i = gl_GlobalInvocationID.x; i < count; i += threads) {
-    uint triangle = items[push.first_put_off + push.first_number + i];
+    uint triangle = items[push.first_number + i];
     Corners corners = fetchCorners(instance, triangle);
     FilmTriangle t = projectTriangle(corners);
     ivec2 extent = t.last - t.first + 1;

@@ -1,4 +1,4 @@
-// Depths of one instance's triangles: small ones are drawn at once, the others put off in parts.
+// Draws one instance's triangles: small ones at once, the others are put off in parts.
 //
 // Eight neighbours run in step, so all wait for the one with the most pixels.
 #version 460
@@ -7,6 +7,7 @@
 #include "frame/raster.glsl"
 
 layout(local_size_x = 64) in;
+layout(constant_id = 5) const bool kPutsOff = true;  // else all are small
 
 void main() {
   InstanceRecord instance = fetchInstance(push.instance);
@@ -14,13 +15,12 @@ void main() {
   if (triangle >= push.triangle_count) return;
   Corners corners = fetchCorners(instance, triangle);
   FilmTriangle t = projectTriangle(corners);
-  bool beyond = isBeyond(corners);
-  bool put_off = beyond ? mayCover(corners) : pixelsOf(t) > kPartPixels;
-  if (beyond || put_off) t.last.y = t.first.y - 1;
-  bool may_be_seen = drawDepths(t);
-  // One list or the other: accesses cost the same whether one thread of eight makes them or none.
-  if (put_off || may_be_seen) {
-    uint place = atomicAdd(counts[countOf(push.list, put_off ? kCountPutOff : kCountNearest)], 1u);
-    items[push.first_number + (put_off ? push.first_put_off : 0u) + place] = triangle;
+  if (kPutsOff) {
+    bool beyond = isBeyond(corners);
+    bool put_off = beyond ? mayCover(corners) : pixelsOf(t) > kPartPixels;
+    if (beyond || put_off) t.last.y = t.first.y - 1;
+    if (put_off)
+      items[push.first_number + atomicAdd(counts[countOf(push.list, kCountPutOff)], 1u)] = triangle;
   }
+  draw(t, push.first_number + triangle);
 }

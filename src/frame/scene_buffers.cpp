@@ -28,6 +28,25 @@ bool isPassable(const Material& m) {
   return roughness * roughness < kDeltaAlpha || m.metallic_roughness_texture.valid();
 }
 
+float longestEdgeOf(const Mesh& mesh) {
+  float squared = 0.0F;
+  for (const uvec3& t : mesh.triangles) {
+    const vec3 a = mesh.positions[t.x], b = mesh.positions[t.y], c = mesh.positions[t.z];
+    squared = std::max({squared, dot(b - a, b - a), dot(c - b, c - b), dot(a - c, a - c)});
+  }
+  return std::sqrt(squared);
+}
+
+/// A bound for how many times longer a transform makes things, exact for turning and scaling: no eigenvalue of a matrix
+/// is beyond the largest sum of a row.
+float stretchOf(const mat4& m) {
+  const mat3 squared = glm::transpose(mat3(m)) * mat3(m);
+  float largest = 0.0F;
+  for (int i = 0; i < 3; ++i)
+    largest = std::max(largest, std::abs(squared[i].x) + std::abs(squared[i].y) + std::abs(squared[i].z));
+  return std::sqrt(largest);
+}
+
 /// Images that materials refer to, one behind the other.
 class TexelTables {
  public:
@@ -249,6 +268,7 @@ void SceneBuffers::uploadMeshes(gpu::Device& device, gpu::CommandRecorder& recor
       first[k] = {mesh.positions[t.x],   packNormal(mesh, t.x), mesh.positions[t.y],
                   packNormal(mesh, t.y), mesh.positions[t.z],   packNormal(mesh, t.z)};
     });
+    places_[i].longest_edge = longestEdgeOf(mesh);
     const WantedAttributes wanted = inspectTextures(scene.materials[mesh.material]);
     for (int set = 0; set < 2; ++set)
       if (wanted.texcoords[set]) places_[i].texcoords[set] = appendAttribute(attributes, mesh, mesh.texcoords[set]);
@@ -324,7 +344,8 @@ void SceneBuffers::updateInstances(gpu::Device& device, gpu::CommandRecorder& re
                       .generates = generates,
                       .receives = classes_[mesh.material].is_receiver,
                       .closed = place.is_closed,
-                      .bounds = bounds});
+                      .bounds = bounds,
+                      .longest_edge = place.longest_edge * stretchOf(m)});
   }
   instances_ = makeTable<InstanceRecord>(device, recorder, instances, "instances");
 }

@@ -81,6 +81,7 @@ class SceneBuffers {
     bool receives = false;   ///< catches them
     bool closed = false;     ///< its mesh has no open edges; known of scenes with generators
     Bounds bounds;           ///< world
+    float longest_edge = 0;  ///< no edge of a triangle is longer; m, world
   };
   const std::vector<Draw>& draws() const { return draws_; }
   const SceneTraits& traits() const { return traits_; }
@@ -99,6 +100,7 @@ class SceneBuffers {
     std::uint32_t first_vertex = 0, first_triangle = 0;
     std::uint32_t texcoords[2] = {kNowhere, kNowhere}, colors = kNowhere, tangents = kNowhere;
     bool is_closed = false;
+    float longest_edge = 0;  ///< of a triangle, in the mesh's space
   };
 
   gpu::Sampler sampler_;

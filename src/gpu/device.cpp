@@ -21,6 +21,7 @@ Device::Device(const Instance& instance, const DeviceInfo& info) : instance_api_
     api_.GetDeviceQueue(handle_, queue_family_, 0, &queue_);
     timestamp_tick_ms_ = static_cast<double>(info.timestamp_period_ns) * 1e-6;
     float_atomics_ = info.float_atomics;
+    int64_atomics_ = info.int64_atomics;
     finishCreation(instance_api_, info.handle);
   } catch (...) {
     destroy();
@@ -34,7 +35,8 @@ Device::Device(const ForeignDevice& foreign)
       handle_(foreign.device),
       owned_(false),
       queue_(foreign.queue),
-      queue_family_(foreign.queue_family) {
+      queue_family_(foreign.queue_family),
+      int64_atomics_(foreign.int64_atomics) {
   try {
     finishCreation(instance_api_, foreign.physical);
     // Not every queue counts time.
@@ -57,10 +59,8 @@ void Device::create(const DeviceInfo& info) {
   instance_api_.GetPhysicalDeviceFeatures2(info.handle, available.chain());
   wanted.requireNeeded();
   std::vector<const char*> extensions = neededExtensions();
-  if (info.float_atomics) {
-    wanted.takeWelcome(available);
-    extensions.push_back(VK_EXT_SHADER_ATOMIC_FLOAT_EXTENSION_NAME);
-  }
+  wanted.takeWelcome(available);
+  if (info.float_atomics) extensions.push_back(VK_EXT_SHADER_ATOMIC_FLOAT_EXTENSION_NAME);
   const float priority = 1.0F;
   const VkDeviceQueueCreateInfo queue{.sType = VK_STRUCTURE_TYPE_DEVICE_QUEUE_CREATE_INFO,
                                       .queueFamilyIndex = info.queue_family,

@@ -23,6 +23,7 @@ struct ForeignDevice {
   VkDevice device = VK_NULL_HANDLE;
   VkQueue queue = VK_NULL_HANDLE;
   std::uint32_t queue_family = 0;
+  bool int64_atomics = false;  ///< whether it was made with them
 };
 
 /// Outlives everything made with it. One thread at a time, but for `memory()`.
@@ -50,6 +51,7 @@ class Device {
   /// What images of that format, tiled as the driver likes, can be used for.
   VkFormatFeatureFlags featuresOf(VkFormat format) const;
   bool hasFloatAtomics() const { return float_atomics_; }
+  bool hasInt64Atomics() const { return int64_atomics_; }
 
   /// Names an object for captures and messages; nothing where nobody listens.
   void setName(VkObjectType type, std::uint64_t handle, std::string_view name) const;
@@ -84,7 +86,7 @@ class Device {
   std::uint32_t queue_family_ = 0;
   VkPhysicalDeviceProperties properties_{};
   double timestamp_tick_ms_ = 0;
-  bool float_atomics_ = false;
+  bool float_atomics_ = false, int64_atomics_ = false;
   VkPipelineCache pipeline_cache_ = VK_NULL_HANDLE;
   VkSemaphore timeline_ = VK_NULL_HANDLE;
   std::uint64_t submitted_ = 0;

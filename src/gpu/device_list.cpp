@@ -106,6 +106,7 @@ DeviceInfo describeDevice(const InstanceApi& api, VkPhysicalDevice device) {
   api.GetPhysicalDeviceFeatures2(device, available.chain());
   info.missing = available.lacking();
   info.float_atomics = has(VK_EXT_SHADER_ATOMIC_FLOAT_EXTENSION_NAME) && available.floatAtomics();
+  info.int64_atomics = available.int64Atomics();
   for (const char* extension : neededExtensions())
     if (!has(extension)) info.missing.emplace_back(extension);
   bool timestamps = false;

@@ -23,6 +23,7 @@ struct DeviceInfo {
   std::vector<std::string> missing;  ///< what nephroid needs and this device has not; empty: usable
   bool ray_tracing_pipeline = false;
   bool float_atomics = false;      ///< adds to 32-bit floats in buffers and images
+  bool int64_atomics = false;      ///< atomics on 64-bit integers in buffers
   std::uint32_t queue_family = 0;  ///< of graphics and compute together
   float timestamp_period_ns = 0;   ///< of one tick; 0: no timestamps
 

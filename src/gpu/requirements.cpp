@@ -31,6 +31,7 @@ void Features::requireNeeded() {
 void Features::takeWelcome(const Features& available) {
   atomic_float_.shaderBufferFloat32AtomicAdd = available.atomic_float_.shaderBufferFloat32AtomicAdd;
   atomic_float_.shaderImageFloat32AtomicAdd = available.atomic_float_.shaderImageFloat32AtomicAdd;
+  core_.features.shaderInt64 = vulkan12_.shaderBufferInt64Atomics = available.int64Atomics() ? VK_TRUE : VK_FALSE;
 }
 
 std::vector<std::string> Features::lacking() {

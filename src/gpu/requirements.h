@@ -22,6 +22,7 @@ class Features {
   bool floatAtomics() const {
     return atomic_float_.shaderBufferFloat32AtomicAdd && atomic_float_.shaderImageFloat32AtomicAdd;
   }
+  bool int64Atomics() const { return core_.features.shaderInt64 && vulkan12_.shaderBufferInt64Atomics; }
   /// Asks for what is welcome and not needed. @param available  of the device
   void takeWelcome(const Features& available);
 

@@ -139,7 +139,7 @@ TEST(FormatDevices, HasABlockForEachDeviceAndALastLineForAuto) {
    Vulkan   1.3.230
    memory   1.5 GiB
    usable   yes
-   extras   float atomics, timestamps (no ray tracing pipeline)
+   extras   float atomics, timestamps (no 64-bit atomics, no ray tracing pipeline)
 
 auto takes 1: the only discrete GPU
 )");
@@ -148,11 +148,11 @@ auto takes 1: the only discrete GPU
 TEST(FormatDevices, TellsAllAndNoExtras) {
   gpu::DeviceInfo device = makeDevice("One", "CPU");
   EXPECT_THAT(formatDevices({{device}, 0, "why"}),
-              HasSubstr("extras   none (no float atomics, no ray tracing pipeline, no timestamps)\n"));
-  device.float_atomics = device.ray_tracing_pipeline = true;
+              HasSubstr("extras   none (no float atomics, no 64-bit atomics, no ray tracing pipeline, no timestamps)\n"));
+  device.float_atomics = device.int64_atomics = device.ray_tracing_pipeline = true;
   device.timestamp_period_ns = 1;
   EXPECT_THAT(formatDevices({{device}, 0, "why"}),
-              HasSubstr("extras   float atomics, ray tracing pipeline, timestamps\n"));
+              HasSubstr("extras   float atomics, 64-bit atomics, ray tracing pipeline, timestamps\n"));
 }
 
 TEST(FormatDevices, SaysNothingOfTheDriverThatWasNotAsked) {
@@ -178,7 +178,7 @@ TEST(DevicesToJson, HasEveryFieldAndTheChoice) {
   const nlohmann::ordered_json json = devicesToJson({{device}, std::nullopt, "none fits"});
   EXPECT_EQ(json, nlohmann::ordered_json::parse(R"({
     "devices": [{"device": 0, "name": "One", "kind": "virtual GPU", "driver": "Maker 1.2", "vulkan": "1.3.230",
-      "memory_bytes": 1610612736, "usable": false, "missing": ["multiview"], "float_atomics": false,
+      "memory_bytes": 1610612736, "usable": false, "missing": ["multiview"], "float_atomics": false, "int64_atomics": false,
       "ray_tracing_pipeline": true, "timestamps": true, "timestamp_period_ns": 2.5}],
     "auto": null, "reason": "none fits"})"));
   EXPECT_EQ(devicesToJson({{device}, 0, "asked for"})["auto"], 0);

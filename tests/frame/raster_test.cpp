@@ -60,15 +60,21 @@ class RasterTest : public testing::GpuTest {
     gpu::CommandRecorder recorder(device());
     recorder.begin();
     const SceneBuffers buffers(device(), recorder, scene, 0.25F);
-    ComputeRaster raster(device(), buffers, width, height);
+    ComputeRaster raster(device(), recorder, buffers, width, height);
     const auto w = static_cast<std::uint32_t>(width), h = static_cast<std::uint32_t>(height);
     const gpu::Image seen(
         device(),
-        {.format = VK_FORMAT_R32G32_UINT, .width = w, .height = h, .usage = VK_IMAGE_USAGE_COLOR_ATTACHMENT_BIT},
+        {.format = VK_FORMAT_R32G32_UINT,
+         .width = w,
+         .height = h,
+         .usage = VK_IMAGE_USAGE_COLOR_ATTACHMENT_BIT | VK_IMAGE_USAGE_STORAGE_BIT},
         "seen");
     const gpu::Image depth(
         device(),
-        {.format = VK_FORMAT_D32_SFLOAT, .width = w, .height = h, .usage = VK_IMAGE_USAGE_DEPTH_STENCIL_ATTACHMENT_BIT},
+        {.format = VK_FORMAT_D32_SFLOAT,
+         .width = w,
+         .height = h,
+         .usage = VK_IMAGE_USAGE_DEPTH_STENCIL_ATTACHMENT_BIT | VK_IMAGE_USAGE_SAMPLED_BIT},
         "depth");
     recorder.pass("clear", {{seen, gpu::Access::kColorTarget, true}, {depth, gpu::Access::kDepthTarget, true}},
                   [&](gpu::PassCommands& commands) {

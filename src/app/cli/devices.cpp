@@ -35,6 +35,7 @@ std::string formatExtras(const DeviceInfo& device) {
   std::vector<std::string> there, absent;
   const auto sort = [&](bool has, const char* name) { (has ? there : absent).emplace_back(name); };
   sort(device.float_atomics, "float atomics");
+  sort(device.int64_atomics, "64-bit atomics");
   sort(device.ray_tracing_pipeline, "ray tracing pipeline");
   sort(device.timestamp_period_ns > 0, "timestamps");
   if (there.empty()) return fmt::format("none (no {})", fmt::join(absent, ", no "));
@@ -67,6 +68,7 @@ Json toJson(std::size_t number, const DeviceInfo& device) {
           {"usable", device.usable()},
           {"missing", device.missing},
           {"float_atomics", device.float_atomics},
+          {"int64_atomics", device.int64_atomics},
           {"ray_tracing_pipeline", device.ray_tracing_pipeline},
           {"timestamps", device.timestamp_period_ns > 0},
           {"timestamp_period_ns", device.timestamp_period_ns}};
