@@ -22,8 +22,8 @@ static_assert(sizeof(RasterPart) == 16);
 constexpr std::uint32_t kGroup = 64;
 /// Of raster.glsl: a box of more pixels is no matter of one thread.
 constexpr float kPartPixels = 64.0F;
-/// Threads of a group of raster_seen.comp.glsl lie in a row: nothing is done with a pixel but to fetch and to store, and
-/// memory is fastest in the order in which it lies. So many pixels of two words are a line of a cache.
+/// Threads of a group of raster_seen.comp.glsl lie in a row: nothing is done with a pixel but to fetch and to store,
+/// and memory is fastest in the order in which it lies. So many pixels of two words are a line of a cache.
 constexpr int kLinePixels = 8;
 /// Groups that go through the list of parts, whose length only the device knows.
 constexpr std::uint32_t kListGroups = 64;
@@ -48,10 +48,7 @@ gpu::ComputePipeline makePass(gpu::Device& device, gpu::Spirv shader, const char
   std::vector<gpu::Binding> bindings = SceneBuffers::bindings({kTable, kTable, kTable, kTable});
   for (const VkDescriptorType type : more) bindings.push_back({static_cast<std::uint32_t>(bindings.size()), type});
   return {device,
-          {.shader = shader,
-           .bindings = bindings,
-           .push_bytes = sizeof(RasterPush),
-           .constants = std::move(constants)},
+          {.shader = shader, .bindings = bindings, .push_bytes = sizeof(RasterPush), .constants = std::move(constants)},
           name};
 }
 
@@ -203,9 +200,9 @@ ComputeRaster::ComputeRaster(gpu::Device& device, gpu::CommandRecorder& recorder
   constexpr VkBufferUsageFlags kUsage = VK_BUFFER_USAGE_STORAGE_BUFFER_BIT;
   constexpr gpu::MemoryIntent kDevice = gpu::MemoryIntent::kDevice;
   constexpr VkDeviceSize kWord = sizeof(std::uint32_t);
-  keys_ = gpu::Buffer(device, VkDeviceSize{2} * width_ * height_ * kWord,
-                      kUsage | VK_BUFFER_USAGE_UNIFORM_TEXEL_BUFFER_BIT, kDevice, "keys of the raster",
-                      VK_FORMAT_R32G32_UINT);
+  keys_ =
+      gpu::Buffer(device, VkDeviceSize{2} * width_ * height_ * kWord, kUsage | VK_BUFFER_USAGE_UNIFORM_TEXEL_BUFFER_BIT,
+                  kDevice, "keys of the raster", VK_FORMAT_R32G32_UINT);
   counts_ = gpu::Buffer(device, (first_numbers_.size() + 1) * kCounts * kWord, kUsage, kDevice, "counts of the raster");
   // Behind the parts there is room for all triangles, should all be large.
   part_list_ = gpu::Buffer(device, (VkDeviceSize{kPartCapacity} + triangles) * sizeof(RasterPart), kUsage, kDevice,

@@ -1,8 +1,8 @@
 // A rasteriser in compute, for devices that are CPUs: their drivers run compute on all cores and vertices on one.
 //
-// It draws fine meshes over a picture that the hardware's rasteriser has begun. A thread a triangle leaves its depth and
-// its number in each pixel that it covers, as one word of 64 bits of which the largest stays; a last pass tells who is
-// seen. Triangles of many pixels are drawn in parts. What is seen does not depend on the order of threads.
+// It draws fine meshes over a picture that the hardware's rasteriser has begun. A thread a triangle leaves its depth
+// and its number in each pixel that it covers, as one word of 64 bits of which the largest stays; a last pass tells who
+// is seen. Triangles of many pixels are drawn in parts. What is seen does not depend on the order of threads.
 #pragma once
 
 #include <array>

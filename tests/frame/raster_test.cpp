@@ -62,20 +62,18 @@ class RasterTest : public testing::GpuTest {
     const SceneBuffers buffers(device(), recorder, scene, 0.25F);
     ComputeRaster raster(device(), recorder, buffers, width, height);
     const auto w = static_cast<std::uint32_t>(width), h = static_cast<std::uint32_t>(height);
-    const gpu::Image seen(
-        device(),
-        {.format = VK_FORMAT_R32G32_UINT,
-         .width = w,
-         .height = h,
-         .usage = VK_IMAGE_USAGE_COLOR_ATTACHMENT_BIT | VK_IMAGE_USAGE_STORAGE_BIT},
-        "seen");
-    const gpu::Image depth(
-        device(),
-        {.format = VK_FORMAT_D32_SFLOAT,
-         .width = w,
-         .height = h,
-         .usage = VK_IMAGE_USAGE_DEPTH_STENCIL_ATTACHMENT_BIT | VK_IMAGE_USAGE_SAMPLED_BIT},
-        "depth");
+    const gpu::Image seen(device(),
+                          {.format = VK_FORMAT_R32G32_UINT,
+                           .width = w,
+                           .height = h,
+                           .usage = VK_IMAGE_USAGE_COLOR_ATTACHMENT_BIT | VK_IMAGE_USAGE_STORAGE_BIT},
+                          "seen");
+    const gpu::Image depth(device(),
+                           {.format = VK_FORMAT_D32_SFLOAT,
+                            .width = w,
+                            .height = h,
+                            .usage = VK_IMAGE_USAGE_DEPTH_STENCIL_ATTACHMENT_BIT | VK_IMAGE_USAGE_SAMPLED_BIT},
+                           "depth");
     recorder.pass("clear", {{seen, gpu::Access::kColorTarget, true}, {depth, gpu::Access::kDepthTarget, true}},
                   [&](gpu::PassCommands& commands) {
                     commands.beginRendering({.colors = {{.image = seen}}, .depth = &depth});
@@ -282,6 +280,25 @@ TEST_F(RasterTest, AgreesWithTheHardware) {
   }
 }
 
+TEST_F(RasterTest, LeavesNothingForTheNextPicture) {
+  SceneData scene;
+  test::addObject(scene, makeSphere("ball", dvec3(0), 0.5, 64), test::makeDiffuse(vec3(0.5F)));
+  const FrameSettings settings{.width = 160, .height = 120, .rasteriser = Rasteriser::kCompute};
+  const Camera near = makeCamera("near", vec3(0, 0.5F, 2), vec3(0), 0.6F);
+  const Camera far = makeCamera("far", vec3(0, 1, 5), vec3(0.4F, 0, 0), 0.6F);
+  RealtimeFrame moved(device(), scene, near, settings), still(device(), scene, far, settings);
+  const Image before = moved.readGeometry("id");
+  moved.setCamera(far);
+  const Image id = moved.readGeometry("id"), expected = still.readGeometry("id");
+  int changed = 0;
+  for (int y = 0; y < id.height; ++y)
+    for (int x = 0; x < id.width; ++x) {
+      EXPECT_EQ(id.at(x, y)[0], expected.at(x, y)[0]) << x << ", " << y;
+      changed += before.at(x, y)[0] != expected.at(x, y)[0] ? 1 : 0;
+    }
+  EXPECT_GT(changed, 1000);
+}
+
 TEST_F(RasterTest, AClosedRoomHasNoHoles) {
   // Walls of the hardware's, a floor and a ceiling of so many triangles that they are drawn in compute.
   SceneData scene;
@@ -323,7 +340,8 @@ TEST_F(RasterTest, FineMeshesAreForComputeAndCoarseOnesForHardware) {
   const auto split = [&](int width, int height, Rasteriser rasteriser) {
     const ViewRecord view =
         makeCameraView(makeCamera("eye", vec3(0, 1, 4), vec3(0), 0.6F), width, height, scene.bounds(), vec2(0.5F));
-    return splitDraws(view, buffers.draws(), static_cast<std::uint32_t>(width) * static_cast<std::uint32_t>(height), rasteriser);
+    return splitDraws(view, buffers.draws(), static_cast<std::uint32_t>(width) * static_cast<std::uint32_t>(height),
+                      rasteriser);
   };
   EXPECT_EQ(split(640, 480, Rasteriser::kAuto).compute, std::vector<std::size_t>{1});
   EXPECT_EQ(split(640, 480, Rasteriser::kAuto).hardware, std::vector<std::size_t>{0});
