@@ -171,10 +171,10 @@ Rasteriser chooseRasteriser(Rasteriser wanted, const gpu::Device& device, const 
     most = std::max<VkDeviceSize>(most, draw.index_count / 3);
   }
   if (wanted == Rasteriser::kAuto && triangles < kFewInAll) return Rasteriser::kHardware;
+  const VkDeviceSize pixels = static_cast<VkDeviceSize>(width) * static_cast<VkDeviceSize>(height);
   const bool fits = most <= VkDeviceSize{kGroup} * limits.maxComputeWorkGroupCount[0] &&
                     (kPartCapacity + triangles) * sizeof(RasterPart) <= limits.maxStorageBufferRange &&
-                    VkDeviceSize{8} * static_cast<VkDeviceSize>(width) * static_cast<VkDeviceSize>(height) <=
-                        limits.maxStorageBufferRange &&
+                    8 * pixels <= limits.maxStorageBufferRange && pixels <= limits.maxTexelBufferElements &&
                     height < 65536;  // rows of a part have 16 bits
   return fits ? wanted : Rasteriser::kHardware;
 }

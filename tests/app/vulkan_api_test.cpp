@@ -16,11 +16,18 @@ namespace {
 
 constexpr std::uint32_t kWidth = 64, kHeight = 48;
 
-/// A device of the caller's: made with what Requirements say and nothing else.
+/// A device of the caller's: made with what Requirements say and nothing else, or with 64-bit atomics too.
 class CallersDevice {
  public:
-  explicit CallersDevice(const gpu::Instance& instance, const gpu::DeviceInfo& info) : api_(instance.api()) {
+  CallersDevice(const gpu::Instance& instance, const gpu::DeviceInfo& info, bool int64_atomics = false)
+      : api_(instance.api()) {
     vulkan::Requirements requirements;
+    if (int64_atomics) {
+      auto* vulkan12 = static_cast<VkPhysicalDeviceVulkan12Features*>(requirements.features()->pNext);
+      EXPECT_EQ(vulkan12->sType, VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_VULKAN_1_2_FEATURES);
+      requirements.features()->features.shaderInt64 = vulkan12->shaderBufferInt64Atomics = VK_TRUE;
+      given.int64_atomics = true;
+    }
     const std::vector<const char*> extensions = requirements.extensions();
     const float priority = 1.0F;
     const VkDeviceQueueCreateInfo queue{.sType = VK_STRUCTURE_TYPE_DEVICE_QUEUE_CREATE_INFO,
@@ -54,8 +61,8 @@ class CallersDevice {
 
 class VulkanApi : public testing::GpuTest {
  protected:
-  VulkanApi()
-      : callers_(std::make_unique<CallersDevice>(instance(), info())),
+  explicit VulkanApi(bool int64_atomics = false)
+      : callers_(std::make_unique<CallersDevice>(instance(), info(), int64_atomics)),
         tools_(gpu::ForeignDevice{given().get_instance_proc_addr, given().instance, given().physical, given().device,
                                   given().queue, given().queue_family}) {}
 
@@ -120,6 +127,31 @@ TEST_F(VulkanApi, DrawsWhatRenderRenders) {
         ASSERT_NEAR(drawn[4 * i + c], view.pixels[3 * i + c], 1e-6F + 1e-5F * view.pixels[3 * i + c]) << i;
   }
   EXPECT_FALSE(renderer.passTimes().empty());
+}
+
+/// On a device that was made with 64-bit atomics.
+class VulkanApiWithInt64Atomics : public VulkanApi {
+ protected:
+  VulkanApiWithInt64Atomics() : VulkanApi(true) {}
+};
+
+/// Draws builtin:sphere. @return  whether its mesh was drawn in compute, which is faster on devices that are CPUs
+bool drawsInCompute(const vulkan::Device& device, const vulkan::Image& target) {
+  Scene scene = Scene::load("builtin:sphere");
+  vulkan::Renderer renderer(device, scene);
+  renderer.drawPicture(target, {.layers = {"direct"}, .for_screen = false});
+  return std::ranges::any_of(renderer.passTimes(),
+                             [](const vulkan::PassTime& pass) { return pass.name == "raster triangles"; });
+}
+
+TEST_F(VulkanApi, LeavesFineMeshesToTheHardware) {
+  const gpu::Image target = makeImage(VK_FORMAT_R32G32B32A32_SFLOAT, 0);
+  EXPECT_FALSE(drawsInCompute(given(), describe(target, VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL)));
+}
+
+TEST_F(VulkanApiWithInt64Atomics, DrawsFineMeshesInCompute) {
+  const gpu::Image target = makeImage(VK_FORMAT_R32G32B32A32_SFLOAT, 0);
+  EXPECT_EQ(drawsInCompute(given(), describe(target, VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL)), device().isCpu());
 }
 
 TEST_F(VulkanApi, ScreensGetTheSamePictureByEitherWayOfCoding) {
