@@ -20,8 +20,6 @@ static_assert(sizeof(RasterPart) == 16);
 
 /// Threads of a group.
 constexpr std::uint32_t kGroup = 64;
-/// Of raster.glsl: a box of more pixels is no matter of one thread.
-constexpr float kPartPixels = 64.0F;
 /// Threads of a group of raster_seen.comp.glsl lie in a row: nothing is done with a pixel but to fetch and to store,
 /// and memory is fastest in the order in which it lies. So many pixels of two words are a line of a cache.
 constexpr int kLinePixels = 8;
@@ -66,7 +64,7 @@ RasterPush describeView(const ViewRecord& view, std::uint32_t width, std::uint32
           .part_capacity = kPartCapacity};
 }
 
-/// Where things inside of bounds are on the film, from its middle in units of the view's `half`.
+/// Where things inside of bounds are on the film, from its middle; `half` of it is as much as was said.
 struct Outline {
   bool is_cut = false;  ///< some of it is before the near end: nothing else is known
   vec2 lower{kInfinity}, upper{-kInfinity};
@@ -108,7 +106,7 @@ bool mayPutOff(const ViewRecord& view, const SceneBuffers::Draw& draw, vec2 half
   const vec2 per_metre = half * vec2(length(vec3(view.clip_row_x)), length(vec3(view.clip_row_y))) +
                          farthest * length(vec3(view.clip_row_w));
   const vec2 pixels = draw.longest_edge / outline.least_w * per_metre + 1.1F;
-  return !(pixels.x * pixels.y <= kPartPixels);
+  return !(pixels.x * pixels.y <= static_cast<float>(kPartPixels));
 }
 
 /// Of all that draws may show.

@@ -172,9 +172,6 @@ uint depthAt(FilmTriangle t, ivec2 pixel) {
   return covers ? floatBitsToUint(max(clamp(depth, t.farthest, t.nearest), 1e-37)) : 0u;
 }
 
-/// More pixels than this in its box, and a triangle is drawn in parts of about so many.
-const int kPartPixels = 64;
-
 int pixelsOf(FilmTriangle t) {
   ivec2 extent = t.last - t.first + 1;
   return extent.y > 0 ? extent.x * extent.y : 0;

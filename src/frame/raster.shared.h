@@ -35,6 +35,9 @@ struct RasterPart {
   uint rows;    // of the picture: the first, and from bit 16 on how many
 };
 
+/// More pixels than this in its box, and a triangle is drawn in parts of about so many.
+NEPHROID_CONST int kPartPixels = 64;
+
 NEPHROID_CONST uint kAllRows = 0xFFFF0000u;
 
 // Each draw has a list of triangles, and all parts have some too. Their lengths, by list:

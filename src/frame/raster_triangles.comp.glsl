@@ -19,8 +19,7 @@ void main() {
     bool beyond = isBeyond(corners);
     bool put_off = beyond ? mayCover(corners) : pixelsOf(t) > kPartPixels;
     if (beyond || put_off) t.last.y = t.first.y - 1;
-    if (put_off)
-      items[push.first_number + atomicAdd(counts[countOf(push.list, kCountPutOff)], 1u)] = triangle;
+    if (put_off) items[push.first_number + atomicAdd(counts[countOf(push.list, kCountPutOff)], 1u)] = triangle;
   }
   draw(t, push.first_number + triangle);
 }

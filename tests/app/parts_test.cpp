@@ -147,8 +147,9 @@ auto takes 1: the only discrete GPU
 
 TEST(FormatDevices, TellsAllAndNoExtras) {
   gpu::DeviceInfo device = makeDevice("One", "CPU");
-  EXPECT_THAT(formatDevices({{device}, 0, "why"}),
-              HasSubstr("extras   none (no float atomics, no 64-bit atomics, no ray tracing pipeline, no timestamps)\n"));
+  EXPECT_THAT(
+      formatDevices({{device}, 0, "why"}),
+      HasSubstr("extras   none (no float atomics, no 64-bit atomics, no ray tracing pipeline, no timestamps)\n"));
   device.float_atomics = device.int64_atomics = device.ray_tracing_pipeline = true;
   device.timestamp_period_ns = 1;
   EXPECT_THAT(formatDevices({{device}, 0, "why"}),
@@ -178,8 +179,8 @@ TEST(DevicesToJson, HasEveryFieldAndTheChoice) {
   const nlohmann::ordered_json json = devicesToJson({{device}, std::nullopt, "none fits"});
   EXPECT_EQ(json, nlohmann::ordered_json::parse(R"({
     "devices": [{"device": 0, "name": "One", "kind": "virtual GPU", "driver": "Maker 1.2", "vulkan": "1.3.230",
-      "memory_bytes": 1610612736, "usable": false, "missing": ["multiview"], "float_atomics": false, "int64_atomics": false,
-      "ray_tracing_pipeline": true, "timestamps": true, "timestamp_period_ns": 2.5}],
+      "memory_bytes": 1610612736, "usable": false, "missing": ["multiview"], "float_atomics": false,
+      "int64_atomics": false, "ray_tracing_pipeline": true, "timestamps": true, "timestamp_period_ns": 2.5}],
     "auto": null, "reason": "none fits"})"));
   EXPECT_EQ(devicesToJson({{device}, 0, "asked for"})["auto"], 0);
 }
