@@ -9,11 +9,11 @@
 #include "frame/response.glsl"
 
 layout(local_size_x = 8, local_size_y = 8) in;
-layout(scalar, set = 0, binding = 7) readonly buffer Views { ViewRecord views[]; };
-layout(set = 0, binding = 8) uniform usampler2D seen_image;
+layout(scalar, set = 0, binding = 7) uniform Views { ViewRecord views[1]; };
+layout(set = 0, binding = 8, rg32ui) readonly uniform uimage2D seen_image;
 layout(set = 0, binding = 9) uniform sampler2D tint_image;  // of what lies before what is shown
-layout(set = 0, binding = 10) uniform sampler2D irradiance_image;
-layout(set = 0, binding = 11) uniform sampler2D direction_image;
+layout(set = 0, binding = 10, rgba32f) readonly uniform image2D irradiance_image;
+layout(set = 0, binding = 11, rgba32f) readonly uniform image2D direction_image;
 layout(set = 0, binding = 12, rgba32f) uniform image2D caustic_image;     // sum over samples, W/m²/sr
 layout(set = 0, binding = 13, rgba32f) uniform image2D irradiance_sum;  // likewise, W/m²
 
@@ -26,8 +26,8 @@ void main() {
   ivec2 pixel = ivec2(gl_GlobalInvocationID.xy);
   ivec2 size = imageSize(caustic_image);
   if (pixel.x >= size.x || pixel.y >= size.y) return;
-  vec3 irradiance = texelFetch(irradiance_image, pixel, 0).xyz;
-  uvec2 seen = texelFetch(seen_image, pixel, 0).xy;
+  vec3 irradiance = imageLoad(irradiance_image, pixel).xyz;
+  uvec2 seen = imageLoad(seen_image, pixel).xy;
   if (seen.x == 0u || irradiance == vec3(0.0)) return;
   ViewRecord view = views[0];
   Ray ray = rayThrough(view, (vec2(pixel) + vec2(view.film_x, view.film_y)) / vec2(size) * 2.0 - 1.0);
@@ -42,7 +42,7 @@ void main() {
   if (dot(s.shading, -ray.dir) <= 1e-4) s.shading = geometric;
   bool has_interface = m.optics.alpha >= specular_alpha && (kSceneHasMetal || kSceneHasGloss);
   if (m.base_weight <= 0.0 && !has_interface) return;
-  vec3 from = -texelFetch(direction_image, pixel, 0).xyz;
+  vec3 from = -imageLoad(direction_image, pixel).xyz;
   // Opposite directions cancel: then the light is taken to fall straight on.
   float squared = dot(from, from);
   vec3 wi = squared > 0.0 && dot(from, s.shading) > 0.0 ? from * inversesqrt(squared) : s.shading;

@@ -29,7 +29,7 @@ CausticPass::CausticPass(gpu::Device& device, const SceneBuffers& buffers, const
       pipeline_(
           device,
           {.shader = shaders::caustic_comp,
-           .bindings = SceneBuffers::bindings({kTable, kTexture, kTexture, kTexture, kTexture, kStorage, kStorage}),
+           .bindings = SceneBuffers::bindings({kUniforms, kStorage, kTexture, kStorage, kStorage, kStorage, kStorage}),
            .push_bytes = sizeof(CausticPush),
            .constants = buffers.traits().constants()},
           "caustic") {
@@ -44,17 +44,16 @@ void CausticPass::fitPicture(gpu::Device& device) {
 
 void CausticPass::record(gpu::CommandRecorder& recorder, std::uint32_t frame) {
   const std::vector<Use> uses = buffers_.uses(
-      Access::kComputeRead, {Use(inputs_.camera_view, Access::kComputeRead), Use(inputs_.seen, Access::kComputeRead),
-                             Use(inputs_.tint, Access::kComputeRead), Use(target_.irradiance, Access::kComputeRead),
-                             Use(target_.direction, Access::kComputeRead), Use(radiance_, Access::kComputeWrite),
+      Access::kComputeRead, {Use(inputs_.camera_view, Access::kComputeRead), Use(inputs_.seen, Access::kStorageRead),
+                             Use(inputs_.tint, Access::kComputeRead), Use(target_.irradiance, Access::kStorageRead),
+                             Use(target_.direction, Access::kStorageRead), Use(radiance_, Access::kComputeWrite),
                              Use(irradiance_, Access::kComputeWrite)});
   recorder.pass("caustic", uses, [&](PassCommands& commands) {
     const gpu::Sampler& nearest = buffers_.sampler();
     commands.bind(pipeline_);
-    commands.bindResources(
-        buffers_.bound({Bound(7, inputs_.camera_view), Bound(8, inputs_.seen, nearest), Bound(9, inputs_.tint, nearest),
-                        Bound(10, target_.irradiance, nearest), Bound(11, target_.direction, nearest),
-                        Bound(12, radiance_), Bound(13, irradiance_)}));
+    commands.bindResources(buffers_.bound(
+        {Bound(7, inputs_.camera_view), Bound(8, inputs_.seen), Bound(9, inputs_.tint, nearest),
+         Bound(10, target_.irradiance), Bound(11, target_.direction), Bound(12, radiance_), Bound(13, irradiance_)}));
     commands.pushConstants(CausticPush{frame, specular_alpha_});
     commands.dispatch(gpu::groupsOf(radiance_.desc().width, kPixelGroup),
                       gpu::groupsOf(radiance_.desc().height, kPixelGroup));

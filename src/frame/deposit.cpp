@@ -22,15 +22,15 @@ gpu::ComputeDesc describe(gpu::Spirv shader, Reconstruction reconstruction, std:
                           std::uint32_t shared_layers, bool at_levels = false) {
   return {.shader = shader,
           .bindings = {{0, kTexels},
-                       {1, kTable},
-                       {2, kTexture},
+                       {1, kUniforms},
+                       {2, kStorage},
                        {3, kStorage},
                        {4, kStorage},
                        {5, kTable},
                        {6, kTable},
                        {7, kTable},
-                       {8, kTexture},
-                       {9, kTexture},
+                       {8, kStorage},
+                       {9, kStorage},
                        {10, kStorage}},
           .push_bytes = sizeof(DepositPush),
           .constants = {{0, reconstruction == Reconstruction::kQuads},
@@ -63,7 +63,7 @@ Deposit::Deposit(gpu::Device& device, Reconstruction reconstruction, std::uint32
              "deposit mixed") {}
 
 void Deposit::record(gpu::CommandRecorder& recorder, const PhotonBuffer& photons, const DepositSurfaces& surfaces,
-                     float weight, float splat_radius, const gpu::Sampler& nearest, const FluxMap& map) {
+                     float weight, float splat_radius, const FluxMap& map) {
   const PhotonBatch& batch = photons.batch;
   NEPHROID_ASSERT_LE(batch.grid_width * batch.grid_height, photons.chunks()[0].count);
   const gpu::Buffer& records = photons.chunks()[0].buffer;
@@ -96,22 +96,22 @@ void Deposit::record(gpu::CommandRecorder& recorder, const PhotonBuffer& photons
                 [&](PassCommands& commands) { commands.fill(lists_, 0, 0, kHeadBytes); });
   std::vector<Use> uses{Use(records, Access::kComputeRead),
                         Use(surfaces.views, Access::kComputeRead),
-                        Use(surfaces.surfaces, Access::kComputeRead),
+                        Use(surfaces.surfaces, Access::kStorageRead),
                         Use(map.flux(), Access::kComputeWrite),
                         Use(map.tiles(), Access::kComputeWrite),
                         Use(map.lost(), Access::kComputeWrite),
                         Use(lists_, Access::kComputeWrite),
-                        Use(map.levels().surfaces(), Access::kComputeRead),
-                        Use(map.levels().kinds(), Access::kComputeRead),
+                        Use(map.levels().surfaces(), Access::kStorageRead),
+                        Use(map.levels().kinds(), Access::kStorageRead),
                         Use(map.levels().flux(), Access::kComputeWrite),
                         Use(map.levels().state(), Access::kDispatchRead)};
   if (photons.squares.valid()) uses.emplace_back(photons.squares, Access::kComputeRead);
   const auto bind = [&](PassCommands& commands, const gpu::ComputePipeline& pipeline) {
     commands.bind(pipeline);
-    commands.bindResources({Bound(0, records), Bound(1, surfaces.views), Bound(2, surfaces.surfaces, nearest),
+    commands.bindResources({Bound(0, records), Bound(1, surfaces.views), Bound(2, surfaces.surfaces),
                             Bound(3, map.flux()), Bound(4, map.tiles()), Bound(5, map.lost()), Bound(6, lists_),
-                            Bound(7, squares), Bound(8, map.levels().surfaces(), nearest),
-                            Bound(9, map.levels().kinds(), nearest), Bound(10, map.levels().flux())});
+                            Bound(7, squares), Bound(8, map.levels().surfaces()), Bound(9, map.levels().kinds()),
+                            Bound(10, map.levels().flux())});
     commands.pushConstants(push);
   };
   const auto overSquares = [&](const gpu::ComputePipeline& pipeline) {
@@ -132,7 +132,7 @@ void Deposit::record(gpu::CommandRecorder& recorder, const PhotonBuffer& photons
   };
   goThrough("deposit", cells_);
   goThrough("deposit edges", edges_);
-  levels_.prepare(recorder, lists_, surfaces, flux_layers_, nearest, map);
+  levels_.prepare(recorder, lists_, surfaces, flux_layers_, map);
   const auto goThroughIf = [&](const char* name, const gpu::ComputePipeline& pipeline, VkDeviceSize groups) {
     recorder.pass(name, uses, [&](PassCommands& commands) {
       bind(commands, pipeline);

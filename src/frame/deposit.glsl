@@ -13,10 +13,10 @@
 #include "frame/frame.shared.h"
 #include "frame/receiver_map.shared.h"
 
-layout(scalar, set = 0, binding = 1) readonly buffer Views { ViewRecord views[]; };
+layout(scalar, set = 0, binding = 1) uniform Views { ViewRecord views[kMostViews]; };
 layout(constant_id = 2) const uint kViewCount = 1u;
 #include "frame/texel_surface.glsl"
-layout(set = 0, binding = 2) uniform sampler2DArray surfaces;
+layout(set = 0, binding = 2, rgba32f) readonly uniform image2DArray surfaces;
 layout(set = 0, binding = 3, r32i) uniform iimage2DArray flux_image;
 layout(set = 0, binding = 4, r32ui) writeonly uniform uimage2DArray tile_image;
 layout(scalar, set = 0, binding = 5) buffer Lost { int lost_steps[]; };
@@ -61,6 +61,14 @@ int toSteps(float steps, uint random) {
   return int(floor(steps + float(random >> 8) * (1.0 / 16777216.0)));
 }
 
+/// Of a thread, until it has deposited all: a device that runs both branches for all threads would pay for every texel.
+ivec3 lost_by_thread = ivec3(0);
+
+void addLostByThread() {
+  if (lost_by_thread == ivec3(0)) return;
+  for (uint c = 0u; c < 3u; ++c) atomicAdd(lost_steps[c], lost_by_thread[c]);
+}
+
 /// @param picture  of flux: view · kFluxLayers + layer
 /// @param salt     of what is deposited
 void addToTexel(ivec2 texel, uint picture, Light light, float share, uint salt, bool is_kept) {
@@ -68,7 +76,7 @@ void addToTexel(ivec2 texel, uint picture, Light light, float share, uint salt, 
   vec3 steps = light.flux * (share * push.steps_per_watt);
   ivec3 whole = ivec3(toSteps(steps.x, random), toSteps(steps.y, random), toSteps(steps.z, random));
   if (!is_kept) {
-    for (uint c = 0u; c < 3u; ++c) atomicAdd(lost_steps[c], whole[c]);
+    lost_by_thread += whole;
     return;
   }
   int layer = int(picture * kChannels);
@@ -99,7 +107,7 @@ OnPicture onView(vec3 place, uint view) {
 
 /// @param forward  of the view, where views share surfaces
 TexelSurface fetchTexel(ivec2 texel, uint view, uint layer, vec3 forward) {
-  vec4 surface = texelFetch(surfaces, ivec3(texel, view * push.layer_count + layer), 0);
+  vec4 surface = imageLoad(surfaces, ivec3(texel, view * push.layer_count + layer));
   return kViewsShare ? describeTexel(surface, forward) : describeTexel(surface);
 }
 
@@ -113,7 +121,7 @@ struct Span {
 
 /// Does light from a direction that falls on the places fall on the texel's surface?
 bool isLit(ivec2 texel, uint view, uint layer, Span span, vec3 direction) {
-  vec4 surface = texelFetch(surfaces, ivec3(texel, view * push.layer_count + layer), 0);
+  vec4 surface = imageLoad(surfaces, ivec3(texel, view * push.layer_count + layer));
   return isLitAt(surface, kViewsShare ? span.forward : views[0].forward, span.first, span.third, span.reach, direction);
 }
 

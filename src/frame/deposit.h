@@ -46,7 +46,7 @@ class Deposit {
   /// @param weight         times which their flux is added
   /// @param splat_radius   texels at which a Gaussian of two standard deviations ends
   void record(gpu::CommandRecorder& recorder, const PhotonBuffer& photons, const DepositSurfaces& surfaces,
-              float weight, float splat_radius, const gpu::Sampler& nearest, const FluxMap& map);
+              float weight, float splat_radius, const FluxMap& map);
   /// Records that nothing more is added to the map: only then all of its flux is in FluxMap::flux.
   void finish(gpu::CommandRecorder& recorder, const FluxMap& map) const { levels_.finish(recorder, map); }
 

@@ -56,6 +56,7 @@ void depositItem(uint item) {
 }
 
 void main() {
-  uint threads = gl_NumWorkGroups.x * gl_WorkGroupSize.x;
-  for (uint i = gl_GlobalInvocationID.x; i < lists.whole_count; i += threads) depositItem(listed[i]);
+  uint threads = gl_NumWorkGroups.x * gl_WorkGroupSize.x, count = lists.whole_count;
+  for (uint i = gl_GlobalInvocationID.x; i < count; i += threads) depositItem(listed[i]);
+  addLostByThread();
 }

@@ -69,8 +69,8 @@ void addPiece(Piece piece, uint number, uint part) {
 }
 
 void main() {
-  uint threads = gl_NumWorkGroups.x * gl_WorkGroupSize.x;
-  for (uint i = gl_GlobalInvocationID.x; i < lists.torn_count; i += threads) {
+  uint threads = gl_NumWorkGroups.x * gl_WorkGroupSize.x, count = lists.torn_count;
+  for (uint i = gl_GlobalInvocationID.x; i < count; i += threads) {
     uint item = listed[cellCount() - 1u - i], number = numberIn(item);
     TornPhoton torn = fetchTorn(firstOf(number));
     uint quarters = item >> kPartShift, parts = quarters == kAllQuarters ? 1u << kPhotonPart : quarters;
@@ -84,4 +84,5 @@ void main() {
       addPiece(pieceOf(torn, part), number, part);
     }
   }
+  addLostByThread();
 }

@@ -38,4 +38,5 @@ void main() {
     uint place = cellCount() + i / each;
     addPiece(fetchPiece(listed[place]), place, i % each, each);
   }
+  addLostByThread();
 }

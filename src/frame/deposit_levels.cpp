@@ -23,7 +23,7 @@ FluxLevelsPush pushOf(const FluxMap& map) {
 
 gpu::ComputeDesc describeDesc(bool is_first) {
   return {.shader = shaders::flux_levels_describe_comp,
-          .bindings = {{0, kTexture}, {1, kStorage}, {2, kStorage}, {3, kStorage}},
+          .bindings = {{0, kStorage}, {1, kStorage}, {2, kStorage}, {3, kStorage}},
           .push_bytes = sizeof(FluxLevelsPush),
           .constants = {{0, is_first}}};
 }
@@ -46,7 +46,7 @@ DepositLevels::DepositLevels(gpu::Device& device, bool directions)
            "sum of levels") {}
 
 void DepositLevels::prepare(gpu::CommandRecorder& recorder, const gpu::Buffer& lists, const DepositSurfaces& surfaces,
-                            std::uint32_t flux_layers, const gpu::Sampler& nearest, const FluxMap& map) const {
+                            std::uint32_t flux_layers, const FluxMap& map) const {
   const FluxLevels& levels = map.levels();
   FluxLevelsPush push = pushOf(map);
   push.layer_count = surfaces.layer_count;
@@ -61,14 +61,14 @@ void DepositLevels::prepare(gpu::CommandRecorder& recorder, const gpu::Buffer& l
   if (levels.count() == 0) return;
   // One more: which texels of the last show the same.
   for (push.level = 1; push.level <= levels.count() + 1; ++push.level) {
-    const std::vector<Use> uses{Use(surfaces.surfaces, Access::kComputeRead),
+    const std::vector<Use> uses{Use(surfaces.surfaces, Access::kStorageRead),
                                 Use(levels.surfaces(), Access::kComputeWrite),
                                 Use(levels.kinds(), Access::kComputeWrite), Use(levels.links(), Access::kComputeWrite),
                                 Use(levels.state(), Access::kDispatchRead)};
     recorder.pass("what levels show", uses, [&](PassCommands& commands) {
       commands.bind(push.level == 1 ? describe_first_ : describe_);
-      commands.bindResources({Bound(0, surfaces.surfaces, nearest), Bound(1, levels.surfaces()),
-                              Bound(2, levels.kinds()), Bound(3, levels.links())});
+      commands.bindResources({Bound(0, surfaces.surfaces), Bound(1, levels.surfaces()), Bound(2, levels.kinds()),
+                              Bound(3, levels.links())});
       commands.pushConstants(push);
       commands.dispatchIndirect(levels.state(),
                                 offsetof(FluxLevelsState, describe) + (push.level - 1) * sizeof(DepositGroups));
@@ -80,7 +80,7 @@ void DepositLevels::finish(gpu::CommandRecorder& recorder, const FluxMap& map) c
   const FluxLevels& levels = map.levels();
   FluxLevelsPush push = pushOf(map);
   for (push.level = levels.count(); push.level > 0; --push.level) {
-    const std::vector<Use> uses{Use(levels.flux(), Access::kComputeWrite), Use(levels.links(), Access::kComputeWrite),
+    const std::vector<Use> uses{Use(levels.flux(), Access::kComputeWrite), Use(levels.links(), Access::kStorageRead),
                                 Use(map.flux(), Access::kComputeWrite), Use(map.tiles(), Access::kComputeWrite),
                                 Use(levels.state(), Access::kDispatchRead)};
     recorder.pass("sum of levels", uses, [&](PassCommands& commands) {

@@ -24,7 +24,7 @@ class DepositLevels {
   /// @param lists        of Deposit
   /// @param flux_layers  of each view that have flux
   void prepare(gpu::CommandRecorder& recorder, const gpu::Buffer& lists, const DepositSurfaces& surfaces,
-               std::uint32_t flux_layers, const gpu::Sampler& nearest, const FluxMap& map) const;
+               std::uint32_t flux_layers, const FluxMap& map) const;
   /// Records that what is in the levels is added to the map.
   void finish(gpu::CommandRecorder& recorder, const FluxMap& map) const;
 

@@ -102,4 +102,5 @@ void main() {
     uint place = cellCount() + i, item = listed[place];
     if ((item & kMeetsMixed) != 0u) addPiece(fetchPiece(item), place, 0u, 1u);
   }
+  addLostByThread();
 }

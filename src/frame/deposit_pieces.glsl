@@ -9,8 +9,8 @@
 #include "frame/deposit_torn.glsl"
 #include "frame/flux_levels.glsl"
 
-layout(set = 0, binding = 8) uniform sampler2DArray level_surfaces;
-layout(set = 0, binding = 9) uniform usampler2DArray level_kinds;
+layout(set = 0, binding = 8, rgba32f) readonly uniform image2DArray level_surfaces;
+layout(set = 0, binding = 9, r32ui) readonly uniform uimage2DArray level_kinds;
 layout(set = 0, binding = 10, r32i) uniform iimage2DArray level_flux;
 layout(constant_id = 4) const bool kAtLevels = false;  // else on the picture itself
 
@@ -60,9 +60,9 @@ uint litLayerOf(ivec2 node, Deposited d, uint level, ivec2 origin, out bool is_m
   is_mixed = false;
   [[unroll]] for (uint k = 0u; k < kFluxLayers; ++k) {
     ivec3 place = ivec3(origin + node, d.view * kFluxLayers + k);
-    uint kind = texelFetch(level_kinds, place, 0).x;
+    uint kind = imageLoad(level_kinds, place).x;
     vec3 forward = kViewsShare ? d.span.forward : views[0].forward;
-    bool is_lit = kind == kNodeSurface && isLitAt(texelFetch(level_surfaces, place, 0), forward, d.span.first,
+    bool is_lit = kind == kNodeSurface && isLitAt(imageLoad(level_surfaces, place), forward, d.span.first,
                                                   d.span.third, d.span.reach, d.light.direction);
     is_mixed = is_mixed || (lit == kFluxLayers && kind == kNodeMixed);
     if (is_lit && lit == kFluxLayers && !is_mixed) lit = k;

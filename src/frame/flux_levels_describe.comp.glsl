@@ -8,7 +8,7 @@
 #include "core/optics/photon.shared.h"
 
 layout(local_size_x = 8, local_size_y = 8) in;
-layout(set = 0, binding = 0) uniform sampler2DArray surfaces;
+layout(set = 0, binding = 0, rgba32f) readonly uniform image2DArray surfaces;
 layout(set = 0, binding = 1, rgba32f) uniform image2DArray level_surfaces;
 layout(set = 0, binding = 2, r32ui) uniform uimage2DArray level_kinds;
 layout(set = 0, binding = 3, r32ui) writeonly uniform uimage2DArray level_links;
@@ -39,7 +39,7 @@ Node fetchNode(ivec2 at, uint level, uint picture) {
   uint kind;
   if (kIsFirst) {
     uint layer = picture / push.flux_layers * push.layer_count + picture % push.flux_layers;
-    surface = texelFetch(surfaces, ivec3(at, layer), 0);
+    surface = imageLoad(surfaces, ivec3(at, layer));
     kind = abs(surface.x) < kNowhereAt ? kNodeSurface : kNodeNothing;
   } else {
     ivec3 place = ivec3(levelOrigin(padded_size, level) + at, picture);

@@ -1,14 +1,16 @@
 #include "frame/foreign_lighting.h"
 
+#include "frame/table.h"
+
 namespace nephroid {
 
 ForeignLighting::ForeignLighting(gpu::Device& device, const SceneBuffers& buffers, const LightGrids& lights)
     : device_(device),
       buffers_(buffers),
       lights_(lights),
-      view_(device, sizeof(ForeignViewRecord), VK_BUFFER_USAGE_STORAGE_BUFFER_BIT, gpu::MemoryIntent::kDevice,
-            "foreign view"),
-      nothing_(device, {.format = VK_FORMAT_R32G32_UINT, .usage = VK_IMAGE_USAGE_SAMPLED_BIT}, "nothing seen") {}
+      // Bound as a view of the frame, too, which nobody reads then but which is larger.
+      view_(makeUniforms<ViewRecord>(device, 1, "foreign view")),
+      nothing_(device, {.format = VK_FORMAT_R32G32_UINT, .usage = VK_IMAGE_USAGE_STORAGE_BIT}, "nothing seen") {}
 
 void ForeignLighting::record(gpu::CommandRecorder& recorder, const ForeignPicture& picture,
                              const ForeignViewRecord& view, const IrradianceImages& target, const ForeignLight& light,

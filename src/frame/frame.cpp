@@ -57,7 +57,7 @@ struct RealtimeFrame::Passes {
       : visibility(draw(device, traits, shaders::visibility_frag, {.format = kSeenFormat}, true, "visibility")),
         geometry_layer(device,
                        {.shader = shaders::geometry_layer_comp,
-                        .bindings = SceneBuffers::bindings({kTable, kTexture, kStorage}),
+                        .bindings = SceneBuffers::bindings({kUniforms, kStorage, kStorage}),
                         .push_bytes = sizeof(std::uint32_t),
                         .constants = traits.constants()},
                        "geometry layer") {
@@ -94,8 +94,7 @@ RealtimeFrame::RealtimeFrame(gpu::Device& device, const SceneData& scene, const 
       settings_(settings),
       bounds_(scene.bounds()),
       recorder_(device),
-      camera_view_(device, sizeof(ViewRecord), VK_BUFFER_USAGE_STORAGE_BUFFER_BIT, gpu::MemoryIntent::kDevice,
-                   "camera"),
+      camera_view_(makeUniforms<ViewRecord>(device, 1, "camera")),
       nothing_(device, {.format = kFloat4, .usage = VK_IMAGE_USAGE_SAMPLED_BIT}, "nothing"),
       environment_sampler_(device, {.address_u = VK_SAMPLER_ADDRESS_MODE_REPEAT}, "environment") {
   recorder_.begin();
@@ -455,12 +454,11 @@ Image RealtimeFrame::readGeometry(const std::string& layer) {
   recorder_.begin();
   recordVisibility(vec2(0.5F), 0, true);
   const std::vector<Use> uses =
-      buffers_->uses(Access::kComputeRead, {Use(camera_view_, Access::kComputeRead), Use(seen_, Access::kComputeRead),
+      buffers_->uses(Access::kComputeRead, {Use(camera_view_, Access::kComputeRead), Use(seen_, Access::kStorageRead),
                                             Use(target, Access::kComputeWrite, true)});
   recorder_.pass("geometry layer", uses, [&](PassCommands& commands) {
     commands.bind(passes_->geometry_layer);
-    commands.bindResources(
-        buffers_->bound({Bound(7, camera_view_), Bound(8, seen_, buffers_->sampler()), Bound(9, target)}));
+    commands.bindResources(buffers_->bound({Bound(7, camera_view_), Bound(8, seen_), Bound(9, target)}));
     commands.pushConstants(kind);
     commands.dispatch(gpu::groupsOf(seen_.desc().width, kPixelGroup), gpu::groupsOf(seen_.desc().height, kPixelGroup));
   });

@@ -118,6 +118,9 @@ struct ViewRecord {
   float pad_up;
 };
 
+/// Views of a picture at the most: of a cube, or along axes.
+NEPHROID_CONST uint kMostViews = 6u;
+
 /// How to find places from somebody else's depths and normals.
 struct ForeignViewRecord {
   vec4 world_row_x;  // world from clip, row by row; homogeneous
@@ -129,6 +132,10 @@ struct ForeignViewRecord {
   uint normals_are_coded;  // as 0.5 + 0.5 n
   uint pad;
 };
+
+/// Of so many lights, or fewer, shaders have code for each; frame/shade_blocks.comp.glsl and
+/// frame/specular_lit.comp.glsl keep as many words.
+NEPHROID_CONST uint kMostFewLights = 2u;
 
 /// A light as a point or a direction that shines, for one sample of it.
 struct LightRecord {

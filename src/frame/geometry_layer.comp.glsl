@@ -5,8 +5,8 @@
 #include "frame/material.glsl"
 
 layout(local_size_x = 8, local_size_y = 8) in;
-layout(scalar, set = 0, binding = 7) readonly buffer Views { ViewRecord views[]; };
-layout(set = 0, binding = 8) uniform usampler2D seen_image;
+layout(scalar, set = 0, binding = 7) uniform Views { ViewRecord views[1]; };
+layout(set = 0, binding = 8, rg32ui) readonly uniform uimage2D seen_image;
 layout(set = 0, binding = 9, rgba32f) writeonly uniform image2D layer_image;
 
 layout(push_constant, scalar) uniform Push { uint kind; };  // 0 albedo, 1 normal, 2 position, 3 depth, 4 id
@@ -15,7 +15,7 @@ void main() {
   ivec2 pixel = ivec2(gl_GlobalInvocationID.xy);
   ivec2 size = imageSize(layer_image);
   if (pixel.x >= size.x || pixel.y >= size.y) return;
-  uvec2 seen = texelFetch(seen_image, pixel, 0).xy;
+  uvec2 seen = imageLoad(seen_image, pixel).xy;
   vec3 value = vec3(0.0);
   if (seen.x == 0u) {
     // Depth of nothing is infinite; 1/0 is undefined in shaders, the bits are not.

@@ -14,10 +14,6 @@ namespace {
 /// Streams of the sampler, one for each light; those of pixels and photons of other engines do not matter here.
 constexpr std::uint32_t kFirstStream = 0x11670000U;
 
-/// Of so many lights, or fewer, shaders have code for each; frame/shade_blocks.comp.glsl and
-/// frame/specular_lit.comp.glsl keep as many words.
-constexpr std::uint32_t kMostFewLights = 2;
-
 bool isMirrored(const Instance& instance) { return glm::determinant(mat3(instance.world_from_object)) < 0.0F; }
 
 /// World-space corners, wound so that their normal points out of the solid.

@@ -4,7 +4,7 @@
 // lists for it (light_grid.comp.glsl). No bias, no resolution, no map.
 //
 // Needs, at the bindings that the including shader gives by NEPHROID_LIGHT_BINDINGS and the three numbers after it:
-// the table of lights, the heads and the nodes of their grids, and the lights again as a buffer.
+// the table of lights, the heads and the nodes of their grids, and the first of the lights again as uniforms.
 #ifndef NEPHROID_LIGHTS_GLSL
 #define NEPHROID_LIGHTS_GLSL
 
@@ -17,7 +17,7 @@ layout(set = 0, binding = NEPHROID_LIGHT_BINDINGS + 1) uniform usamplerBuffer gr
 layout(set = 0, binding = NEPHROID_LIGHT_BINDINGS + 2) uniform usamplerBuffer grid_nodes;
 // For places in the shader that ask for one light whose index is a constant: then each word is read once, and not by
 // every thread.
-layout(scalar, set = 0, binding = NEPHROID_LIGHT_BINDINGS + 3) readonly buffer Lights { LightRecord lights[]; };
+layout(scalar, set = 0, binding = NEPHROID_LIGHT_BINDINGS + 3) uniform Lights { LightRecord lights[kMostFewLights]; };
 
 // How many lights there are, if they are few; else 0.
 layout(constant_id = 12) const uint kFewLights = 0u;

@@ -12,10 +12,10 @@
 #include "frame/low_pass.shared.h"
 
 layout(local_size_x = 8, local_size_y = 8) in;
-layout(scalar, set = 0, binding = 0) readonly buffer Views { ViewRecord views[]; };
+layout(scalar, set = 0, binding = 0) uniform Views { ViewRecord views[kMostViews]; };
 layout(constant_id = 0) const uint kViewCount = 1u;
 #include "frame/texel_surface.glsl"
-layout(set = 0, binding = 1) uniform sampler2DArray surfaces;
+layout(set = 0, binding = 1, rgba32f) readonly uniform image2DArray surfaces;
 layout(set = 0, binding = 2, r32i) readonly uniform iimage2DArray from_image;
 layout(set = 0, binding = 3, r32i) uniform iimage2DArray to_image;
 layout(set = 0, binding = 4, r32ui) uniform uimage2DArray tile_image;
@@ -30,7 +30,7 @@ const float kSameNormal = 0.5;
 const float kBend = 0.25;
 
 TexelSurface fetchSurface(ivec2 texel, uint view) {
-  return describeTexel(texelFetch(surfaces, ivec3(texel, view * push.layer_count), 0));
+  return describeTexel(imageLoad(surfaces, ivec3(texel, view * push.layer_count)));
 }
 
 ivec2 stepAlong(int steps) { return push.axis == 0u ? ivec2(steps, 0) : ivec2(0, steps); }

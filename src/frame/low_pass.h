@@ -20,8 +20,7 @@ class LowPass {
 
   /// Records two passes, along rows and along columns.
   /// @param deviation  of the Gaussian, texels, > 0
-  void record(gpu::CommandRecorder& recorder, const DepositSurfaces& surfaces, float deviation,
-              const gpu::Sampler& nearest, const FluxMap& map);
+  void record(gpu::CommandRecorder& recorder, const DepositSurfaces& surfaces, float deviation, const FluxMap& map);
 
  private:
   gpu::Device& device_;

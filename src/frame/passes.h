@@ -13,6 +13,8 @@ using gpu::PassCommands;
 using gpu::Use;
 
 inline constexpr VkDescriptorType kTable = VK_DESCRIPTOR_TYPE_STORAGE_BUFFER;
+/// A small buffer of a size that shaders know (makeUniforms).
+inline constexpr VkDescriptorType kUniforms = VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER;
 /// A buffer of texels, to fetch them from or to store them to.
 inline constexpr VkDescriptorType kTexels = VK_DESCRIPTOR_TYPE_UNIFORM_TEXEL_BUFFER;
 inline constexpr VkDescriptorType kStoredTexels = VK_DESCRIPTOR_TYPE_STORAGE_TEXEL_BUFFER;

@@ -37,7 +37,7 @@ PixelDeposit::PixelDeposit(gpu::Device& device, const SceneBuffers& buffers, boo
       irradiance_pipeline_(
           device,
           {.shader = shaders::pixel_irradiance_comp,
-           .bindings = {{0, kTable}, {1, kTexture}, {2, kTexture}, {3, kTexture}, {4, kStorage}, {5, kStorage}},
+           .bindings = {{0, kUniforms}, {1, kStorage}, {2, kStorage}, {3, kStorage}, {4, kStorage}, {5, kStorage}},
            .push_bytes = sizeof(float),
            .constants = {{0, directions}}},
           "irradiance of pixels") {}
@@ -70,14 +70,13 @@ void PixelDeposit::begin(gpu::CommandRecorder& recorder, const RealtimeSample& s
 void PixelDeposit::finish(gpu::CommandRecorder& recorder, const RealtimeSample& sample) {
   const gpu::Image &irradiance = sample.target.irradiance, &direction = sample.target.direction;
   const gpu::Buffer& view = sample.surfaces.view();
-  const std::vector<Use> uses{Use(view, Access::kComputeRead),        Use(places_, Access::kComputeRead),
-                              Use(map_.flux(), Access::kComputeRead), Use(map_.tiles(), Access::kComputeRead),
+  const std::vector<Use> uses{Use(view, Access::kComputeRead),        Use(places_, Access::kStorageRead),
+                              Use(map_.flux(), Access::kStorageRead), Use(map_.tiles(), Access::kStorageRead),
                               Use(irradiance, Access::kComputeWrite), Use(direction, Access::kComputeWrite)};
   recorder.pass("irradiance of pixels", uses, [&](PassCommands& commands) {
-    const gpu::Sampler& nearest = buffers_.sampler();
     commands.bind(irradiance_pipeline_);
-    commands.bindResources({Bound(0, view), Bound(1, places_, nearest), Bound(2, map_.flux(), nearest),
-                            Bound(3, map_.tiles(), nearest), Bound(4, irradiance), Bound(5, direction)});
+    commands.bindResources({Bound(0, view), Bound(1, places_), Bound(2, map_.flux()), Bound(3, map_.tiles()),
+                            Bound(4, irradiance), Bound(5, direction)});
     commands.pushConstants(map_.quantum());
     commands.dispatch(gpu::groupsOf(map_.width(), kPixelGroup), gpu::groupsOf(map_.height(), kPixelGroup));
   });

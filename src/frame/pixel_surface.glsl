@@ -6,11 +6,11 @@
 
 #include "frame/surface.glsl"
 
-layout(scalar, set = 0, binding = NEPHROID_PIXEL_BINDINGS) readonly buffer PixelView { ViewRecord pixel_views[]; };
-layout(scalar, set = 0, binding = NEPHROID_PIXEL_BINDINGS + 1) readonly buffer PixelForeign {
-  ForeignViewRecord pixel_foreign[];
+layout(scalar, set = 0, binding = NEPHROID_PIXEL_BINDINGS) uniform PixelView { ViewRecord pixel_view; };
+layout(scalar, set = 0, binding = NEPHROID_PIXEL_BINDINGS + 1) uniform PixelForeign {
+  ForeignViewRecord pixel_foreign;
 };
-layout(set = 0, binding = NEPHROID_PIXEL_BINDINGS + 2) uniform usampler2D pixel_seen;
+layout(set = 0, binding = NEPHROID_PIXEL_BINDINGS + 2, rg32ui) readonly uniform uimage2D pixel_seen;
 layout(set = 0, binding = NEPHROID_PIXEL_BINDINGS + 3) uniform sampler2D pixel_depth;
 layout(set = 0, binding = NEPHROID_PIXEL_BINDINGS + 4) uniform sampler2D pixel_normal;
 
@@ -42,7 +42,7 @@ float boundForeignError(ForeignViewRecord view, vec4 clip, vec2 pixel_size, vec3
 
 /// @return  false where there is nothing
 bool surfaceOfForeign(ivec2 pixel, ivec2 size, out PixelSurface s) {
-  ForeignViewRecord view = pixel_foreign[0];
+  ForeignViewRecord view = pixel_foreign;
   vec3 normal = texelFetch(pixel_normal, pixel, 0).xyz;
   if (view.normals_are_coded != 0u) normal = 2.0 * normal - 1.0;
   float squared = dot(normal, normal);
@@ -59,9 +59,9 @@ bool surfaceOfForeign(ivec2 pixel, ivec2 size, out PixelSurface s) {
 
 bool surfaceOfPixel(ivec2 pixel, ivec2 size, out PixelSurface s) {
   if (kPixelsAreForeign) return surfaceOfForeign(pixel, size, s);
-  uvec2 seen = texelFetch(pixel_seen, pixel, 0).xy;
+  uvec2 seen = imageLoad(pixel_seen, pixel).xy;
   if (seen.x == 0u) return false;
-  ViewRecord view = pixel_views[0];
+  ViewRecord view = pixel_view;
   Ray ray = rayThrough(view, (vec2(pixel) + vec2(view.film_x, view.film_y)) / vec2(size) * 2.0 - 1.0);
   Surface full = surfaceSeen(ray, seen.x - 1u, seen.y);
   float side = dot(ray.dir, full.geometric) < 0.0 ? 1.0 : -1.0;

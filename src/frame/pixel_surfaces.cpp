@@ -66,18 +66,18 @@ PixelSurfaces PixelSurfaces::ofForeign(const gpu::Buffer& view, const gpu::Image
 }
 
 std::vector<VkDescriptorType> PixelSurfaces::descriptorTypes() {
-  return {kTable, kTable, kTexture, kTexture, kTexture};
+  return {kUniforms, kUniforms, kStorage, kTexture, kTexture};
 }
 
 void PixelSurfaces::appendBound(std::uint32_t first, std::vector<Bound>& bound) const {
   // Only the buffer of the kind that is compiled is read as what it is.
-  bound.insert(bound.end(), {Bound(first, *view_), Bound(first + 1, *view_), Bound(first + 2, *seen_, *sampler_),
+  bound.insert(bound.end(), {Bound(first, *view_), Bound(first + 1, *view_), Bound(first + 2, *seen_),
                              Bound(first + 3, *depth_, *sampler_), Bound(first + 4, *normal_, *sampler_)});
 }
 
 void PixelSurfaces::appendUses(std::vector<gpu::Use>& uses) const {
   uses.emplace_back(*view_, Access::kComputeRead);
-  uses.emplace_back(*seen_, Access::kComputeRead);
+  uses.emplace_back(*seen_, Access::kStorageRead);
   uses.emplace_back(*depth_, Access::kComputeRead);
   if (normal_ != depth_) uses.emplace_back(*normal_, Access::kComputeRead);
 }

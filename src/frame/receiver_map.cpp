@@ -2,9 +2,10 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstring>
 
+#include "core/assert.h"
 #include "frame/passes.h"
+#include "frame/table.h"
 
 namespace nephroid {
 namespace {
@@ -24,16 +25,34 @@ std::uint32_t chooseSize(std::uint32_t wanted, std::uint32_t pictures) {
   return std::min(wanted, static_cast<std::uint32_t>(fits) / kDepositTile * kDepositTile);
 }
 
-gpu::Buffer makeHead(gpu::Device& device, std::size_t views) {
-  return {device, sizeof(ReceiverMapHead) + std::max<std::size_t>(views, 1) * sizeof(ReceiverView),
-          VK_BUFFER_USAGE_STORAGE_BUFFER_BIT, gpu::MemoryIntent::kDevice, "views of receivers"};
+/// As the shader's block.
+struct HeadAndViews {
+  ReceiverMapHead head;
+  ReceiverView views[kMostViews];
+};
+
+gpu::Buffer makeHead(gpu::Device& device) { return makeUniforms<HeadAndViews>(device, 1, "views of receivers"); }
+
+/// Where things are in the views, and how much a step of the flux is, W.
+HeadAndViews describe(const ReceiverViews& views, std::uint32_t size, float quantum) {
+  NEPHROID_ASSERT_LE(views.views.size(), std::size_t{kMostViews});
+  const auto texels = static_cast<float>(size);
+  const float texel = 2.0F * views.half / texels;
+  HeadAndViews made{.head = {.irradiance = quantum / (texel * texel), .texel = texel, .pad_0 = 0, .pad_1 = 0}};
+  std::ranges::transform(views.views, made.views, [&](const ViewRecord& view) {
+    return ReceiverView{.row_x = 0.5F * texels * (view.clip_row_x + view.clip_row_w),
+                        .row_y = 0.5F * texels * (view.clip_row_y + view.clip_row_w),
+                        .forward = view.forward,
+                        .pad = 0.0F};
+  });
+  return made;
 }
 
 }  // namespace
 
 ReceiverMap::ReceiverMap(gpu::Device& device, const SceneData& scene, const SceneBuffers& buffers,
                          const ReceiverMapSettings& settings)
-    : views_(makeReceiverViews(scene, buffers.draws())), settings_(settings), nearest_(&buffers.sampler()) {
+    : views_(makeReceiverViews(scene, buffers.draws())), settings_(settings) {
   if (views_.views.empty()) {
     *this = ReceiverMap(device);
     return;
@@ -45,43 +64,27 @@ ReceiverMap::ReceiverMap(gpu::Device& device, const SceneData& scene, const Scen
       std::make_unique<SurfaceLayers>(device, buffers, size, viewCount(), kLayers, SurfaceLayers::Sides::kFacing);
   deposit_ = std::make_unique<Deposit>(device, settings.reconstruction, viewCount(), settings.directions, kLayers);
   map_ = FluxMap(device, size, size, pictures, settings.directions);
-  head_ = makeHead(device, views_.views.size());
+  head_ = makeHead(device);
 }
 
 ReceiverMap::ReceiverMap(gpu::Device& device)
     : map_(device, 1, 1, 1, false),
-      head_(makeHead(device, 0)),
-      nothing_(device, {.format = kFloat4, .usage = VK_IMAGE_USAGE_SAMPLED_BIT, .is_array = true}, "no receivers") {}
-
-std::vector<std::byte> ReceiverMap::describeViews(float quantum) const {
-  const auto texels = static_cast<float>(size());
-  const float texel = 2.0F * views_.half / texels;
-  const ReceiverMapHead head{.irradiance = quantum / (texel * texel), .texel = texel, .pad_0 = 0, .pad_1 = 0};
-  std::vector<std::byte> bytes(sizeof(head) + views_.views.size() * sizeof(ReceiverView));
-  std::memcpy(bytes.data(), &head, sizeof(head));
-  for (std::size_t v = 0; v < views_.views.size(); ++v) {
-    const ViewRecord& view = views_.views[v];
-    const ReceiverView record{.row_x = 0.5F * texels * (view.clip_row_x + view.clip_row_w),
-                              .row_y = 0.5F * texels * (view.clip_row_y + view.clip_row_w),
-                              .forward = view.forward,
-                              .pad = 0.0F};
-    std::memcpy(bytes.data() + sizeof(head) + v * sizeof(record), &record, sizeof(record));
-  }
-  return bytes;
-}
+      head_(makeHead(device)),
+      nothing_(device, {.format = kFloat4, .usage = VK_IMAGE_USAGE_STORAGE_BIT, .is_array = true}, "no receivers") {}
 
 void ReceiverMap::clear(gpu::CommandRecorder& recorder, float most) {
   if (views_.views.empty()) return;
   if (!surfaces_are_drawn_) surfaces_->record(recorder, views_.views, draws_);
   surfaces_are_drawn_ = true;
   map_.clear(recorder, most);
-  recorder.upload(head_, describeViews(map_.quantum()));
+  const HeadAndViews head = describe(views_, size(), map_.quantum());
+  recorder.upload(head_, std::as_bytes(std::span(&head, 1)));
 }
 
 void ReceiverMap::add(gpu::CommandRecorder& recorder, const PhotonBuffer& photons, float weight) {
   if (views_.views.empty()) return;
   deposit_->record(recorder, photons, {surfaces_->views(), surfaces_->surfaces(), kLayers, &views_}, weight,
-                   settings_.splat_radius, *nearest_, map_);
+                   settings_.splat_radius, map_);
 }
 
 void ReceiverMap::finish(gpu::CommandRecorder& recorder) const {
@@ -94,17 +97,17 @@ dvec3 ReceiverMap::readLost(gpu::Device& device) const {
   return static_cast<double>(map_.quantum()) * dvec3(steps[0], steps[1], steps[2]);
 }
 
-std::vector<VkDescriptorType> ReceiverMap::descriptorTypes() { return {kTable, kTexture, kTexture}; }
+std::vector<VkDescriptorType> ReceiverMap::descriptorTypes() { return {kUniforms, kStorage, kStorage}; }
 
-void ReceiverMap::appendBound(std::uint32_t first, const gpu::Sampler& nearest, std::vector<Bound>& bound) const {
-  bound.insert(bound.end(), {Bound(first, head_), Bound(first + 1, surfaces_ ? surfaces_->depths() : nothing_, nearest),
-                             Bound(first + 2, map_.flux(), nearest)});
+void ReceiverMap::appendBound(std::uint32_t first, std::vector<Bound>& bound) const {
+  bound.insert(bound.end(), {Bound(first, head_), Bound(first + 1, surfaces_ ? surfaces_->depths() : nothing_),
+                             Bound(first + 2, map_.flux())});
 }
 
 void ReceiverMap::appendUses(std::vector<Use>& uses) const {
   uses.insert(uses.end(),
-              {Use(head_, Access::kComputeRead), Use(surfaces_ ? surfaces_->depths() : nothing_, Access::kComputeRead),
-               Use(map_.flux(), Access::kComputeRead)});
+              {Use(head_, Access::kComputeRead), Use(surfaces_ ? surfaces_->depths() : nothing_, Access::kStorageRead),
+               Use(map_.flux(), Access::kStorageRead)});
 }
 
 std::vector<gpu::Constant> ReceiverMap::constants() const {

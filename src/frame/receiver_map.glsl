@@ -12,13 +12,13 @@
 #include "frame/receiver_map.shared.h"
 #include "frame/response.glsl"
 
-layout(scalar, set = 0, binding = NEPHROID_RECEIVER_BINDINGS) readonly buffer ReceiverMap {
+layout(scalar, set = 0, binding = NEPHROID_RECEIVER_BINDINGS) uniform ReceiverMap {
   ReceiverMapHead receiver_head;
-  ReceiverView receiver_views[];
+  ReceiverView receiver_views[kMostViews];
 };
 // Along each view, all layers in a texel.
-layout(set = 0, binding = NEPHROID_RECEIVER_BINDINGS + 1) uniform sampler2DArray receiver_depths;
-layout(set = 0, binding = NEPHROID_RECEIVER_BINDINGS + 2) uniform isampler2DArray receiver_flux;
+layout(set = 0, binding = NEPHROID_RECEIVER_BINDINGS + 1, rgba32f) readonly uniform image2DArray receiver_depths;
+layout(set = 0, binding = NEPHROID_RECEIVER_BINDINGS + 2, r32i) readonly uniform iimage2DArray receiver_flux;
 // W/m²/sr.
 layout(set = 0, binding = NEPHROID_RECEIVER_BINDINGS + 3, rgba32f) uniform image2D specular_caustic_image;
 
@@ -33,9 +33,9 @@ struct Incident {
 };
 
 vec3 fetchSteps(ivec2 texel, int layer) {
-  return vec3(texelFetch(receiver_flux, ivec3(texel, layer), 0).x,
-              texelFetch(receiver_flux, ivec3(texel, layer + 1), 0).x,
-              texelFetch(receiver_flux, ivec3(texel, layer + 2), 0).x);
+  return vec3(imageLoad(receiver_flux, ivec3(texel, layer)).x,
+              imageLoad(receiver_flux, ivec3(texel, layer + 1)).x,
+              imageLoad(receiver_flux, ivec3(texel, layer + 2)).x);
 }
 
 /// How far along a view a surface's plane lies, in m, about a place on it.
@@ -60,14 +60,14 @@ Incident incidentIn(uint v, Surface s, float facing) {
   Depths depths = depthsOf(view, s, facing);
   vec4 place = vec4(s.position, 1.0);
   vec2 texels = vec2(dot(view.row_x, place), dot(view.row_y, place));
-  vec2 last = vec2(textureSize(receiver_flux, 0).xy - 1), corner = floor(texels - 0.5), share = texels - 0.5 - corner;
+  vec2 last = vec2(imageSize(receiver_flux).xy - 1), corner = floor(texels - 0.5), share = texels - 0.5 - corner;
   Incident sum = Incident(vec3(0.0), vec3(0.0));
   float weights = 0.0;
   [[unroll]] for (uint k = 0u; k < 4u; ++k) {
     vec2 step_k = vec2(k & 1u, k >> 1);
     vec2 at = clamp(corner + step_k, vec2(0.0), last), shares = mix(1.0 - share, share, step_k);
     float expected = depths.at + dot(depths.per_texel, at + 0.5 - texels);
-    vec4 off = abs(texelFetch(receiver_depths, ivec3(at, v), 0) - expected);
+    vec4 off = abs(imageLoad(receiver_depths, ivec3(at, v)) - expected);
     uint layer = 0u;
     bool is_same = off.x <= depths.tolerance;
     [[unroll]] for (uint i = 1u; i < kReceiverLayers; ++i)
@@ -92,7 +92,7 @@ Incident incidentIn(uint v, Surface s, float facing) {
 vec3 causticFrom(Surface s, MaterialPoint m, vec3 wo, float specular_alpha) {
   if (kReceiverViews == 0u) return vec3(0.0);
   Incident sum = Incident(vec3(0.0), vec3(0.0));
-  // Words that lie at constant places of a buffer are read once for all threads.
+  // Uniforms at constant places are read once for all threads.
   [[unroll]] for (uint v = 0u; v < kReceiverViews; ++v) {
     float facing = -dot(receiver_views[v].forward, s.geometric);
     if (facing < kLeastFacing) continue;

@@ -51,7 +51,7 @@ class ReceiverMap {
   /// Of frame/receiver_map.glsl: descriptors from the binding on that it is given, what is bound to them, what is read.
   static constexpr std::uint32_t kBindings = 3;
   static std::vector<VkDescriptorType> descriptorTypes();
-  void appendBound(std::uint32_t first, const gpu::Sampler& nearest, std::vector<gpu::Bound>& bound) const;
+  void appendBound(std::uint32_t first, std::vector<gpu::Bound>& bound) const;
   void appendUses(std::vector<gpu::Use>& uses) const;
   /// Its specialisation constants.
   std::vector<gpu::Constant> constants() const;
@@ -62,13 +62,9 @@ class ReceiverMap {
   dvec3 readLost(gpu::Device& device) const;
 
  private:
-  /// Where things are in the views, and how much a step of the flux is, W.
-  std::vector<std::byte> describeViews(float quantum) const;
-
   ReceiverViews views_;
   ReceiverMapSettings settings_;
-  std::vector<std::size_t> draws_;  ///< that are shown, by index
-  const gpu::Sampler* nearest_ = nullptr;
+  std::vector<std::size_t> draws_;           ///< that are shown, by index
   std::unique_ptr<SurfaceLayers> surfaces_;  ///< where there are views
   std::unique_ptr<Deposit> deposit_;         ///< likewise
   bool surfaces_are_drawn_ = false;

@@ -20,7 +20,7 @@ Shaded shade(Surface s, MaterialPoint m, Ray ray, uvec2 pixel) {
 
 void shadePixel(uvec2 pixel) {
   Ray ray = rayThrough(views[0], filmOf(pixel));
-  uvec2 seen = texelFetch(seen_image, ivec2(pixel), 0).xy;
+  uvec2 seen = imageLoad(seen_image, ivec2(pixel)).xy;
   Shaded shaded = Shaded(vec3(0.0), vec3(0.0));
   float t = kFarAway;
   if (seen.x != 0u) {

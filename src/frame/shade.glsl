@@ -8,8 +8,8 @@
 #include "frame/sample_push.shared.h"
 #include "frame/triangle_surface.glsl"
 
-layout(scalar, set = 0, binding = 11) readonly buffer Views { ViewRecord views[]; };
-layout(set = 0, binding = 12) uniform usampler2D seen_image;
+layout(scalar, set = 0, binding = 11) uniform Views { ViewRecord views[1]; };
+layout(set = 0, binding = 12, rg32ui) readonly uniform uimage2D seen_image;
 layout(set = 0, binding = 13) uniform sampler2D tint_image;  // of what lies before what is shown
 layout(set = 0, binding = 16, rgba32f) uniform image2D direct_image;    // sum over samples, W/m²/sr
 layout(set = 0, binding = 17, rgba32f) uniform image2D emission_image;  // likewise

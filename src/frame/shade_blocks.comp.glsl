@@ -25,11 +25,11 @@ Block blockAt(uvec2 place, uvec2 picture) {
   Block b;
   b.first = place * kBlock;
   b.size = min(kBlock, picture - b.first);
-  b.seen = texelFetch(seen_image, ivec2(b.first), 0).xy;
+  b.seen = imageLoad(seen_image, ivec2(b.first)).xy;
   uvec2 differ = uvec2(0u);
   [[unroll]] for (uint y = 0u; y < kBlock.y; ++y)
     [[unroll]] for (uint x = 0u; x < kBlock.x; ++x)
-      differ |= texelFetch(seen_image, ivec2(b.first + min(uvec2(x, y), b.size - 1u)), 0).xy ^ b.seen;
+      differ |= imageLoad(seen_image, ivec2(b.first + min(uvec2(x, y), b.size - 1u))).xy ^ b.seen;
   b.sees_one_instance = differ.x == 0u;
   b.sees_one_triangle = b.sees_one_instance && differ.y == 0u;
   return b;

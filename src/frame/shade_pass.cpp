@@ -21,8 +21,8 @@ gpu::ComputePipeline makePass(gpu::Device& device, gpu::Spirv shader, std::vecto
   constants.insert(constants.end(), lights.begin(), lights.end());
   return {device,
           {.shader = shader,
-           .bindings = SceneBuffers::bindings({kTexels, kTexels, kTexels, kTable, kTable, kTexture, kTexture, kTexels,
-                                               kTexture, kStorage, kStorage, kTable}),
+           .bindings = SceneBuffers::bindings({kTexels, kTexels, kTexels, kUniforms, kUniforms, kStorage, kTexture,
+                                               kTexels, kTexture, kStorage, kStorage, kTable}),
            .push_bytes = sizeof(SamplePush),
            .constants = std::move(constants)},
           name};
@@ -68,7 +68,7 @@ void ShadePass::fitPicture(gpu::Device& device) {
 
 std::vector<gpu::Use> ShadePass::uses() const {
   std::vector<Use> uses = buffers_.uses(
-      Access::kComputeRead, {Use(inputs_.camera_view, Access::kComputeRead), Use(inputs_.seen, Access::kComputeRead),
+      Access::kComputeRead, {Use(inputs_.camera_view, Access::kComputeRead), Use(inputs_.seen, Access::kStorageRead),
                              Use(inputs_.tint, Access::kComputeRead), Use(inputs_.lamps, Access::kComputeRead),
                              Use(inputs_.environment, Access::kComputeRead), Use(direct_, Access::kComputeWrite),
                              Use(emission_, Access::kComputeWrite), Use(lists_, Access::kDispatchWrite)});
@@ -79,10 +79,10 @@ std::vector<gpu::Use> ShadePass::uses() const {
 
 std::vector<gpu::Bound> ShadePass::bound() const {
   const gpu::Sampler& nearest = buffers_.sampler();
-  std::vector<Bound> bound = buffers_.bound({Bound(11, inputs_.camera_view), Bound(12, inputs_.seen, nearest),
-                                             Bound(13, inputs_.tint, nearest), Bound(14, inputs_.lamps),
-                                             Bound(15, inputs_.environment, inputs_.environment_sampler),
-                                             Bound(16, direct_), Bound(17, emission_), Bound(18, lists_)});
+  std::vector<Bound> bound =
+      buffers_.bound({Bound(11, inputs_.camera_view), Bound(12, inputs_.seen), Bound(13, inputs_.tint, nearest),
+                      Bound(14, inputs_.lamps), Bound(15, inputs_.environment, inputs_.environment_sampler),
+                      Bound(16, direct_), Bound(17, emission_), Bound(18, lists_)});
   const std::vector<Bound> of_lights = inputs_.grids.bound(SceneBuffers::kBindings);
   bound.insert(bound.end(), of_lights.begin(), of_lights.end());
   return bound;

@@ -32,7 +32,7 @@
 #include "frame/receiver_map.glsl"
 
 layout(local_size_x = 64) in;
-layout(scalar, set = 0, binding = 11) readonly buffer Views { ViewRecord views[]; };
+layout(scalar, set = 0, binding = 11) uniform Views { ViewRecord views[1]; };
 layout(set = 0, binding = 12, rgba32ui) writeonly uniform uimageBuffer stored_ends;
 layout(set = 0, binding = 13) uniform samplerBuffer band_table;  // wavelength in nm, and weight times their count
 layout(set = 0, binding = 16, rgba32f) uniform image2D specular_image;  // sum over samples, W/m²/sr
@@ -279,7 +279,7 @@ Receiver followStep(inout Chains chains, uvec2 pixel, bool is_first) {
   Met met;
   // What lies before the surface that is shown may reflect too, if it can be seen through.
   if (is_first && !kSceneHasPassable) {
-    met = metSeen(chains.path.ray, texelFetch(seen_image, ivec2(pixel), 0).xy);
+    met = metSeen(chains.path.ray, imageLoad(seen_image, ivec2(pixel)).xy);
   } else {
     met = meetFirst(chains.path.ray, chains.path.instance, chains.path.triangle);
   }

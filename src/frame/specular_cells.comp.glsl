@@ -16,7 +16,7 @@ bool showsOne(Cell cell, uint first) {
   bool one = true;
   for (uint y = 0u; y <= kSpacing; ++y)
     for (uint x = 0u; x <= kSpacing; ++x)
-      one = one && texelFetch(seen_image, ivec2(min(cell.first + uvec2(x, y), cell.last)), 0).x == first;
+      one = one && imageLoad(seen_image, ivec2(min(cell.first + uvec2(x, y), cell.last))).x == first;
   return one;
 }
 
@@ -25,7 +25,7 @@ void main() {
   if (any(greaterThanEqual(point, points))) return;
   Cell cell = cellAt(point);
   // A point's own pixel is the first of its cell, also of one without pixels.
-  uint first = texelFetch(seen_image, ivec2(cell.first), 0).x;
+  uint first = imageLoad(seen_image, ivec2(cell.first)).x;
   bool is_specular = first != 0u && isSpecular(max(first, 1u) - 1u);
   if (is_specular) listed[extend(kPoints, 1u)] = packPlace(point);
   // Beyond the picture's edges nothing is left.

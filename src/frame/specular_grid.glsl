@@ -16,7 +16,7 @@ struct ListHead {
   uint count;
 };
 
-layout(set = 0, binding = NEPHROID_GRID_BINDINGS) uniform usampler2D seen_image;
+layout(set = 0, binding = NEPHROID_GRID_BINDINGS, rg32ui) readonly uniform uimage2D seen_image;
 layout(scalar, set = 0, binding = NEPHROID_GRID_BINDINGS + 1) buffer Lists { ListHead heads[6]; uint listed[]; };
 
 /// Pixels between two points; 1: every pixel is followed, and there are no cells.
@@ -40,7 +40,7 @@ const uint kNoTransmitted = 1u << 31;
 const uint kReflectedPassesBy = 1u << 14;
 const uint kTransmittedPassesBy = 1u << 30;
 
-uvec2 pictureSize() { return uvec2(textureSize(seen_image, 0)); }
+uvec2 pictureSize() { return uvec2(imageSize(seen_image)); }
 
 /// Points along both sides, whatever the shift.
 uvec2 pointCount() { return (pictureSize() + 2u * kSpacing - 2u) / kSpacing + 1u; }

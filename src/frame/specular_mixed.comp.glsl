@@ -15,7 +15,7 @@ uint findSpecular(Cell cell) {
   uvec2 pixel = cell.first;
   uint found = 0u, bit = 1u;
   do {
-    uint seen = texelFetch(seen_image, ivec2(pixel), 0).x;
+    uint seen = imageLoad(seen_image, ivec2(pixel)).x;
     if (seen != 0u && isSpecular(max(seen, 1u) - 1u)) found |= bit;
     bit <<= 1;
   } while (nextPixel(cell, pixel));

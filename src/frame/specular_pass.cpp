@@ -91,21 +91,21 @@ SpecularPass::SpecularPass(gpu::Device& device, gpu::CommandRecorder& recorder, 
   };
   const auto follow = [&](std::uint32_t task, const char* name) {
     return make(shaders::specular_comp,
-                {kTexels, kTexels, kTexels, kTable, kTable, kStoredTexels, kTexels, kTexels, kTexture, kStorage,
-                 kTexels, kTexels, kTexture, kTable},
+                {kTexels, kTexels, kTexels, kUniforms, kUniforms, kStoredTexels, kTexels, kTexels, kTexture, kStorage,
+                 kTexels, kTexels, kStorage, kTable},
                 join(join(join(traits.pathConstants(), of_ends), inputs.tree.constants()), {{kTaskConstant, task}}),
                 name, true);
   };
-  pixels_ = make(shaders::specular_pixels_comp, {kTexture, kTable, kTexture}, traits.constants(), "specular pixels");
+  pixels_ = make(shaders::specular_pixels_comp, {kStorage, kTable, kTexture}, traits.constants(), "specular pixels");
   show_ = follow(kShow, "specular");
   if (following.spacing > 1) {
-    cells_ = make(shaders::specular_cells_comp, {kTexture, kTable}, traits.constants(), "specular cells");
-    mixed_ = make(shaders::specular_mixed_comp, {kTexture, kTable}, traits.constants(), "specular mixed cells");
+    cells_ = make(shaders::specular_cells_comp, {kStorage, kTable}, traits.constants(), "specular cells");
+    mixed_ = make(shaders::specular_mixed_comp, {kStorage, kTable}, traits.constants(), "specular mixed cells");
     follow_most_ = follow(kFollowMost, "specular points");
-    agreement_ = make(shaders::specular_agreement_comp, {kTexture, kTable, kTexels, kStoredTexels},
+    agreement_ = make(shaders::specular_agreement_comp, {kStorage, kTable, kTexels, kStoredTexels},
                       traits.pathConstants(), "specular agreement");
     lit_ = make(shaders::specular_lit_comp,
-                {kTexels, kTexels, kTexels, kTable, kTexture, kTable, kTexels, kTexels, kTexture, kStorage, kTexels},
+                {kTexels, kTexels, kTexels, kUniforms, kStorage, kTable, kTexels, kTexels, kTexture, kStorage, kTexels},
                 join(traits.constants(), of_ends), "specular lit", true);
   }
   fitPicture(device);
@@ -161,7 +161,7 @@ SpecularPass::Push SpecularPass::pushOf(const SamplePush& sample) const {
 
 void SpecularPass::appendReceivers(std::uint32_t first, std::vector<Bound>& bound, std::vector<Use>& uses) const {
   const ReceiverMap& receivers = inputs_.receivers ? *inputs_.receivers : no_receivers_;
-  receivers.appendBound(first, buffers_.sampler(), bound);
+  receivers.appendBound(first, bound);
   bound.emplace_back(first + ReceiverMap::kBindings, caustic_sum_);
   receivers.appendUses(uses);
   uses.emplace_back(caustic_sum_, Access::kComputeWrite);
@@ -169,13 +169,12 @@ void SpecularPass::appendReceivers(std::uint32_t first, std::vector<Bound>& boun
 
 void SpecularPass::recordPixels(gpu::CommandRecorder& recorder, const Push& push) {
   const std::vector<Use> uses = buffers_.uses(
-      Access::kComputeRead, {Use(inputs_.seen, Access::kComputeRead), Use(inputs_.tint, Access::kComputeRead),
+      Access::kComputeRead, {Use(inputs_.seen, Access::kStorageRead), Use(inputs_.tint, Access::kComputeRead),
                              Use(lists_, Access::kComputeWrite)});
   recorder.pass("specular pixels", uses, [&](PassCommands& commands) {
     const gpu::Sampler& nearest = buffers_.sampler();
     commands.bind(pixels_);
-    commands.bindResources(
-        buffers_.bound({Bound(7, inputs_.seen, nearest), Bound(8, lists_), Bound(9, inputs_.tint, nearest)}));
+    commands.bindResources(buffers_.bound({Bound(7, inputs_.seen), Bound(8, lists_), Bound(9, inputs_.tint, nearest)}));
     commands.pushConstants(push);
     commands.dispatch(gpu::groupsOf(sum_.desc().width, 8), gpu::groupsOf(sum_.desc().height, 8));
   });
@@ -183,18 +182,18 @@ void SpecularPass::recordPixels(gpu::CommandRecorder& recorder, const Push& push
 
 void SpecularPass::recordCells(gpu::CommandRecorder& recorder, const Push& push) {
   const std::vector<Use> uses = buffers_.uses(
-      Access::kComputeRead, {Use(inputs_.seen, Access::kComputeRead), Use(lists_, Access::kDispatchWrite)});
+      Access::kComputeRead, {Use(inputs_.seen, Access::kStorageRead), Use(lists_, Access::kDispatchWrite)});
   recorder.pass("specular cells", uses, [&](PassCommands& commands) {
     commands.bind(cells_);
-    commands.bindResources(buffers_.bound({Bound(7, inputs_.seen, buffers_.sampler()), Bound(8, lists_)}));
+    commands.bindResources(buffers_.bound({Bound(7, inputs_.seen), Bound(8, lists_)}));
     commands.pushConstants(push);
     commands.dispatch(gpu::groupsOf(pointCount().x, 8), gpu::groupsOf(pointCount().y, 8));
   });
   const std::vector<Use> mixed_uses = buffers_.uses(
-      Access::kComputeRead, {Use(inputs_.seen, Access::kComputeRead), Use(lists_, Access::kDispatchWrite)});
+      Access::kComputeRead, {Use(inputs_.seen, Access::kStorageRead), Use(lists_, Access::kDispatchWrite)});
   recorder.pass("specular mixed cells", mixed_uses, [&](PassCommands& commands) {
     commands.bind(mixed_);
-    commands.bindResources(buffers_.bound({Bound(7, inputs_.seen, buffers_.sampler()), Bound(8, lists_)}));
+    commands.bindResources(buffers_.bound({Bound(7, inputs_.seen), Bound(8, lists_)}));
     commands.pushConstants(push);
     commands.dispatchIndirect(lists_, kMixedCells * sizeof(ListHead));
   });
@@ -202,13 +201,12 @@ void SpecularPass::recordCells(gpu::CommandRecorder& recorder, const Push& push)
 
 void SpecularPass::recordAgreement(gpu::CommandRecorder& recorder, const Push& push) {
   const std::vector<Use> uses =
-      buffers_.uses(Access::kComputeRead, {Use(inputs_.seen, Access::kComputeRead), Use(lists_, Access::kDispatchWrite),
+      buffers_.uses(Access::kComputeRead, {Use(inputs_.seen, Access::kStorageRead), Use(lists_, Access::kDispatchWrite),
                                            Use(ends_, Access::kComputeRead), Use(bends_, Access::kComputeWrite)});
   recorder.pass("specular agreement", uses, [&](PassCommands& commands) {
-    const gpu::Sampler& nearest = buffers_.sampler();
     commands.bind(agreement_);
     commands.bindResources(
-        buffers_.bound({Bound(7, inputs_.seen, nearest), Bound(8, lists_), Bound(9, ends_), Bound(10, bends_)}));
+        buffers_.bound({Bound(7, inputs_.seen), Bound(8, lists_), Bound(9, ends_), Bound(10, bends_)}));
     commands.pushConstants(push);
     commands.dispatchIndirect(lists_, kCells * sizeof(ListHead));
   });
@@ -218,14 +216,13 @@ void SpecularPass::recordLit(gpu::CommandRecorder& recorder, Push push) {
   const LightGrids& grids = inputs_.grids;
   std::vector<Use> uses = buffers_.uses(
       Access::kComputeRead,
-      {Use(inputs_.seen, Access::kComputeRead), Use(lists_, Access::kDispatchRead), Use(ends_, Access::kComputeRead),
+      {Use(inputs_.seen, Access::kStorageRead), Use(lists_, Access::kDispatchRead), Use(ends_, Access::kComputeRead),
        Use(bends_, Access::kComputeRead), Use(inputs_.lamps, Access::kComputeRead),
        Use(inputs_.environment, Access::kComputeRead), Use(sum_, Access::kComputeWrite)});
   const std::vector<Use> of_lights = grids.uses();
   uses.insert(uses.end(), of_lights.begin(), of_lights.end());
-  const gpu::Sampler& nearest = buffers_.sampler();
   std::vector<Bound> bound =
-      buffers_.bound({Bound(11, inputs_.seen, nearest), Bound(12, lists_), Bound(13, ends_), Bound(14, inputs_.lamps),
+      buffers_.bound({Bound(11, inputs_.seen), Bound(12, lists_), Bound(13, ends_), Bound(14, inputs_.lamps),
                       Bound(15, inputs_.environment, inputs_.environment_sampler), Bound(16, sum_), Bound(17, bends_)});
   appendReceivers(18, bound, uses);
   const std::vector<Bound> of_grids = grids.bound(SceneBuffers::kBindings);
@@ -246,18 +243,17 @@ void SpecularPass::recordFollowing(gpu::CommandRecorder& recorder, const gpu::Co
   const LightGrids& grids = inputs_.grids;
   std::vector<Use> uses = buffers_.uses(
       Access::kComputeRead,
-      {Use(inputs_.camera_view, Access::kComputeRead), Use(inputs_.seen, Access::kComputeRead),
+      {Use(inputs_.camera_view, Access::kComputeRead), Use(inputs_.seen, Access::kStorageRead),
        Use(bands_, Access::kComputeRead), Use(inputs_.lamps, Access::kComputeRead),
        Use(inputs_.environment, Access::kComputeRead), Use(lists_, Access::kDispatchRead),
        Use(ends_, Access::kComputeWrite), Use(sum_, Access::kComputeWrite),
        Use(inputs_.tree.nodes(), Access::kComputeRead), Use(inputs_.tree.triangles(), Access::kComputeRead)});
   const std::vector<Use> of_lights = grids.uses();
   uses.insert(uses.end(), of_lights.begin(), of_lights.end());
-  const gpu::Sampler& nearest = buffers_.sampler();
   std::vector<Bound> bound = buffers_.bound(
       {Bound(11, inputs_.camera_view), Bound(12, ends_), Bound(13, bands_), Bound(14, inputs_.lamps),
        Bound(15, inputs_.environment, inputs_.environment_sampler), Bound(16, sum_), Bound(17, inputs_.tree.nodes()),
-       Bound(18, inputs_.tree.triangles()), Bound(19, inputs_.seen, nearest), Bound(20, lists_)});
+       Bound(18, inputs_.tree.triangles()), Bound(19, inputs_.seen), Bound(20, lists_)});
   appendReceivers(21, bound, uses);
   const std::vector<Bound> of_grids = grids.bound(SceneBuffers::kBindings);
   bound.insert(bound.end(), of_grids.begin(), of_grids.end());

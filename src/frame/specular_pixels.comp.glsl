@@ -13,9 +13,9 @@ layout(set = 0, binding = 9) uniform sampler2D tint_image;  // of what lies befo
 
 void main() {
   ivec2 pixel = ivec2(gl_GlobalInvocationID.xy);
-  ivec2 size = textureSize(seen_image, 0);
+  ivec2 size = imageSize(seen_image);
   if (pixel.x >= size.x || pixel.y >= size.y) return;
-  uint seen = texelFetch(seen_image, pixel, 0).x;
+  uint seen = imageLoad(seen_image, pixel).x;
   bool wanted = false;
   if (seen != 0u) wanted = isSpecular(seen - 1u);
   // A pane takes at least what it reflects.

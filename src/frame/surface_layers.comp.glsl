@@ -6,7 +6,7 @@
 
 layout(local_size_x = 8, local_size_y = 8) in;
 layout(scalar, set = 0, binding = 7) readonly buffer Views { ViewRecord views[]; };
-layout(set = 0, binding = 8) uniform usampler2DArray seen_layers;
+layout(set = 0, binding = 8, rg32ui) readonly uniform uimage2DArray seen_layers;
 layout(set = 0, binding = 9, rgba32f) writeonly uniform image2DArray surface_layers;
 layout(set = 0, binding = 10, rgba32f) writeonly uniform image2DArray depth_layers;  // four layers to a texel
 
@@ -23,7 +23,7 @@ void main() {
   vec4 depths = vec4(infinity);
   for (int i = 0; i < int(layer_count); ++i) {
     ivec3 place = ivec3(texel.xy, texel.z * int(layer_count) + i);
-    uvec2 seen = texelFetch(seen_layers, place, 0).xy;
+    uvec2 seen = imageLoad(seen_layers, place).xy;
     vec4 value = vec4(infinity);
     if (seen.x != 0u) {
       Surface s = surfaceSeen(ray, seen.x - 1u, seen.y);

@@ -1,7 +1,10 @@
 #include "frame/surface_layers.h"
 
+#include <algorithm>
+
 #include "core/assert.h"
 #include "frame/passes.h"
+#include "frame/table.h"
 #include "frame/view.h"
 #include "shaders/frame/facing.frag.h"
 #include "shaders/frame/layer.vert.h"
@@ -56,15 +59,15 @@ SurfaceLayers::SurfaceLayers(gpu::Device& device, const SceneBuffers& buffers, s
       next_(makeDraw(device, sides, true, buffers, "next layer")),
       places_(device,
               {.shader = shaders::surface_layers_comp,
-               .bindings = SceneBuffers::bindings({kTable, kTexture, kStorage, kStorage}),
+               .bindings = SceneBuffers::bindings({kTable, kStorage, kStorage, kStorage}),
                .push_bytes = sizeof(std::uint32_t),
                .constants = buffers.traits().constants()},
               "places of layers"),
       layer_count_(layers),
-      views_(device, views * sizeof(ViewRecord), VK_BUFFER_USAGE_STORAGE_BUFFER_BIT, gpu::MemoryIntent::kDevice,
-             "views of layers"),
+      views_(makeUniforms<ViewRecord>(device, std::max(views, kMostViews), "views of layers")),
       seen_(makeLayers(device, kSeenFormat, size, views * layers,
-                       VK_IMAGE_USAGE_COLOR_ATTACHMENT_BIT | VK_IMAGE_USAGE_SAMPLED_BIT, "seen in layers")),
+                       VK_IMAGE_USAGE_COLOR_ATTACHMENT_BIT | VK_IMAGE_USAGE_STORAGE_BIT | VK_IMAGE_USAGE_SAMPLED_BIT,
+                       "seen in layers")),
       surfaces_(makeLayers(device, kFloat4, size, views * layers,
                            VK_IMAGE_USAGE_STORAGE_BIT | VK_IMAGE_USAGE_SAMPLED_BIT, "surfaces in layers")),
       depths_(makeLayers(device, kFloat4, size, views * gpu::groupsOf(layers, 4),
@@ -86,12 +89,12 @@ void SurfaceLayers::record(gpu::CommandRecorder& recorder, std::span<const ViewR
   for (std::uint32_t v = 0; v < view_count_; ++v)
     for (std::uint32_t layer = 0; layer < layer_count_; ++layer) recordLayer(recorder, views[v], draws, v, layer);
   const std::vector<Use> uses = buffers_.uses(
-      Access::kComputeRead, {Use(views_, Access::kComputeRead), Use(seen_, Access::kComputeRead),
+      Access::kComputeRead, {Use(views_, Access::kComputeRead), Use(seen_, Access::kStorageRead),
                              Use(surfaces_, Access::kComputeWrite, true), Use(depths_, Access::kComputeWrite, true)});
   recorder.pass("places of layers", uses, [&](PassCommands& commands) {
     commands.bind(places_);
-    commands.bindResources(buffers_.bound(
-        {Bound(7, views_), Bound(8, seen_, buffers_.sampler()), Bound(9, surfaces_), Bound(10, depths_)}));
+    commands.bindResources(
+        buffers_.bound({Bound(7, views_), Bound(8, seen_), Bound(9, surfaces_), Bound(10, depths_)}));
     commands.pushConstants(layer_count_);
     const std::uint32_t groups = gpu::groupsOf(size(), kPixelGroup);
     commands.dispatch(groups, groups, view_count_);

@@ -23,6 +23,15 @@ gpu::Buffer makeTable(gpu::Device& device, gpu::CommandRecorder& recorder, std::
   return makeTexelTable(device, recorder, VK_FORMAT_R32G32B32A32_UINT, std::as_bytes(records), name);
 }
 
+/// A buffer of `count` records that shaders read as uniforms. A word at a constant place of it is read once for all
+/// threads wherever it is asked for. Of a storage buffer, a device that is a CPU reads it for each thread anew where
+/// threads may go different ways, which took half of the time of some passes.
+template <class Record>
+gpu::Buffer makeUniforms(gpu::Device& device, std::size_t count, std::string_view name) {
+  return {device, count * sizeof(Record), VK_BUFFER_USAGE_UNIFORM_BUFFER_BIT | VK_BUFFER_USAGE_STORAGE_BUFFER_BIT,
+          gpu::MemoryIntent::kDevice, name};
+}
+
 /// A buffer for as many texels of four words, which shaders write. @throws ResourceError as above
 gpu::Buffer makeWrittenTable(gpu::Device& device, std::uint64_t texels, std::string_view name);
 

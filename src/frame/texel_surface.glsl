@@ -1,8 +1,8 @@
 // The surface that a texel of a view's picture shows, the world area that it covers, and whether flux may lie on it.
 //
-// The including shader gives `views`, a buffer of ViewRecords, and `kViewCount`. Views of several are faces of one cube:
-// what does not tell them apart is read of the first, whose place in the buffer is a constant, since devices without
-// registers to spare for each thread read such words once.
+// The including shader gives `views`, uniforms of ViewRecords, and `kViewCount`. Views of several are faces of one cube:
+// what does not tell them apart is read of the first, whose place is a constant, since devices without registers to
+// spare for each thread read such words once.
 #ifndef NEPHROID_TEXEL_SURFACE_GLSL
 #define NEPHROID_TEXEL_SURFACE_GLSL
 
@@ -53,7 +53,8 @@ struct TexelSurface {
 /// @param forward  of the view, if it is parallel
 TexelSurface describeTexel(vec4 texel, vec3 forward) {
   vec3 normal = unpackUnitVector(floatBitsToUint(texel.w));
-  vec3 along = views[0].is_orthographic != 0u ? forward : texel.xyz - views[0].eye;
+  // No branch: lavapipe compiles a shader anew, at times each time, for the uniforms that alone decide one.
+  vec3 along = mix(texel.xyz - views[0].eye, forward, bvec3(views[0].is_orthographic != 0u));
   float distance_2 = dot(along, along);
   float cos_view = dot(normal, along) * inversesqrt(max(distance_2, 1e-37));
   return TexelSurface(texel.xyz, cos_view > 0.0 ? -normal : normal, abs(cos_view), distance_2);
@@ -74,7 +75,8 @@ vec3 unpackDirection(uint packed_vector) {
 /// @param forward  of the view, if it is parallel
 bool isLitAt(vec4 texel, vec3 forward, vec3 first, vec3 second, float reach, vec3 direction) {
   vec3 normal = unpackDirection(floatBitsToUint(texel.w));
-  vec3 along = views[0].is_orthographic != 0u ? forward : texel.xyz - views[0].eye;
+  // No branch: lavapipe compiles a shader anew, at times each time, for the uniforms that alone decide one.
+  vec3 along = mix(texel.xyz - views[0].eye, forward, bvec3(views[0].is_orthographic != 0u));
   float off = min(abs(dot(normal, first - texel.xyz)), abs(dot(normal, second - texel.xyz)));
   return off * off <= reach * reach * dot(normal, normal) && dot(normal, along) * dot(normal, direction) > 0.0;
 }

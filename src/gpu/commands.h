@@ -19,7 +19,8 @@ namespace nephroid::gpu {
 enum class Access : std::uint8_t {
   kTransferRead,
   kTransferWrite,
-  kComputeRead,    ///< buffers, sampled images
+  kComputeRead,    ///< buffers, uniform ones too, sampled images
+  kStorageRead,    ///< storage images
   kDispatchRead,   ///< buffers, also for the number of groups
   kDispatchWrite,  ///< likewise, and writing
   kComputeWrite,   ///< buffers, storage images; what was there may be kept

@@ -100,10 +100,10 @@ class DepositTest : public testing::GpuTest {
     map.clear(recorder, 2.0F * kGrid * kGrid);
     const DepositSurfaces surfaces{layers.views(), layers.surfaces(), 1};
     Deposit pass(device(), options.reconstruction, view_count, true);
-    pass.record(recorder, buffer, surfaces, 1.0F, 1.5F, buffers.sampler(), map);
+    pass.record(recorder, buffer, surfaces, 1.0F, 1.5F, map);
     pass.finish(recorder, map);
     LowPass low_pass(device(), view_count, true);
-    if (options.low_pass > 0.0F) low_pass.record(recorder, surfaces, options.low_pass, buffers.sampler(), map);
+    if (options.low_pass > 0.0F) low_pass.record(recorder, surfaces, options.low_pass, map);
     recorder.submit();
     return read(map, view_count);
   }

@@ -195,7 +195,7 @@ void CausticMap::smooth(gpu::CommandRecorder& recorder, const DepositSurfaces& s
   const std::size_t index = views > 1 ? 1 : 0;
   if (low_passes_.size() <= index) low_passes_.resize(index + 1);
   if (!low_passes_[index]) low_passes_[index] = std::make_unique<LowPass>(inputs_.device, views, directions_);
-  low_passes_[index]->record(recorder, surfaces, settings_.low_pass, inputs_.buffers.sampler(), map);
+  low_passes_[index]->record(recorder, surfaces, settings_.low_pass, map);
 }
 
 LookUp& CausticMap::lookUp(bool foreign, std::uint32_t views) {
@@ -267,7 +267,7 @@ void CausticMap::record(gpu::CommandRecorder& recorder, const RealtimeSample& sa
     }
     const auto add = [&](const PhotonBuffer& photons) {
       deposit(1).record(recorder, photons, pixel_deposit_->surfaces(sample), sample.weight * point.weight,
-                        settings_.splat_radius, inputs_.buffers.sampler(), pixel_deposit_->map());
+                        settings_.splat_radius, pixel_deposit_->map());
     };
     sinks.push_back({add, add});
     emit(recorder, sample.index, point, sinks);
@@ -299,8 +299,7 @@ void CausticMap::recordMaps(gpu::CommandRecorder& recorder, const RealtimeSample
     }
     const auto addTo = [&](const Map& map) {
       return [&](const PhotonBuffer& photons) {
-        deposit(views).record(recorder, photons, map.surfaces, 1.0F, settings_.splat_radius, inputs_.buffers.sampler(),
-                              *map.flux);
+        deposit(views).record(recorder, photons, map.surfaces, 1.0F, settings_.splat_radius, *map.flux);
       };
     };
     // Without a map of generators that are receivers too nothing lands on them.
@@ -438,7 +437,6 @@ std::vector<Ledger> CausticMap::account() {
     ledgers.emplace_back();
     ledgers.back().light = i < inputs_.scene.lights.size() ? inputs_.scene.lights[i].name : "emission";
   }
-  constexpr std::uint32_t kMostViews = 6;
   const auto bands = static_cast<std::uint32_t>(bands_.size());
   PhotonLedger ledger(inputs_.device, photons_->ends.capacity(),
                       bands * kMostViews * (3 + settings_.internal_reflections));

@@ -8,12 +8,12 @@
 #include "frame/deposit.shared.h"
 
 layout(local_size_x = 8, local_size_y = 8) in;
-layout(scalar, set = 0, binding = 12) readonly buffer Views { ViewRecord views[]; };
+layout(scalar, set = 0, binding = 12) uniform Views { ViewRecord views[kMostViews]; };
 layout(constant_id = 21) const uint kViewCount = 1u;
 #include "frame/texel_surface.glsl"
-layout(set = 0, binding = 13) uniform sampler2DArray surfaces;
-layout(set = 0, binding = 14) uniform isampler2DArray flux_image;
-layout(set = 0, binding = 15) uniform usampler2DArray tile_image;
+layout(set = 0, binding = 13, rgba32f) readonly uniform image2DArray surfaces;
+layout(set = 0, binding = 14, r32i) readonly uniform iimage2DArray flux_image;
+layout(set = 0, binding = 15, r32ui) readonly uniform uimage2DArray tile_image;
 layout(set = 0, binding = 16, rgba32f) uniform image2D irradiance_image;  // W/m²
 layout(set = 0, binding = 17, rgba32f) uniform image2D direction_image;
 
@@ -39,17 +39,17 @@ struct Found {
 /// their size.
 Found fetchFlux(ivec2 texel, uint v, PixelSurface pixel, float reach) {
   Found found = Found(vec3(0.0), vec3(0.0), 0.0);
-  TexelSurface s = describeTexel(texelFetch(surfaces, ivec3(texel, v * push.layer_count), 0));
+  TexelSurface s = describeTexel(imageLoad(surfaces, ivec3(texel, v * push.layer_count)));
   if (!liesOn(s, pixel.position, reach) || dot(s.lit_normal, pixel.geometric) < kSameNormal) return found;
   int layer = int(v * kChannels);
-  vec3 flux = vec3(texelFetch(flux_image, ivec3(texel, layer), 0).x, texelFetch(flux_image, ivec3(texel, layer + 1), 0).x,
-                   texelFetch(flux_image, ivec3(texel, layer + 2), 0).x);
+  vec3 flux = vec3(imageLoad(flux_image, ivec3(texel, layer)).x, imageLoad(flux_image, ivec3(texel, layer + 1)).x,
+                   imageLoad(flux_image, ivec3(texel, layer + 2)).x);
   float per_area = push.watts / texelArea(s, vec2(texel) + 0.5, vec2(push.size));
   found.irradiance = flux * per_area;
   if (kHasDirections)
-    found.direction = per_area * vec3(texelFetch(flux_image, ivec3(texel, layer + 3), 0).x,
-                                      texelFetch(flux_image, ivec3(texel, layer + 4), 0).x,
-                                      texelFetch(flux_image, ivec3(texel, layer + 5), 0).x);
+    found.direction = per_area * vec3(imageLoad(flux_image, ivec3(texel, layer + 3)).x,
+                                      imageLoad(flux_image, ivec3(texel, layer + 4)).x,
+                                      imageLoad(flux_image, ivec3(texel, layer + 5)).x);
   found.weight = 1.0;
   return found;
 }
@@ -74,9 +74,9 @@ bool hasFlux(vec2 texels, uint v) {
   vec2 last = vec2(push.size) - 1.0;
   ivec2 first_tile = ivec2(clamp(texels - 1.0, vec2(0.0), last)) / int(kDepositTile);
   ivec2 last_tile = ivec2(clamp(texels + 1.0, vec2(0.0), last)) / int(kDepositTile);
-  uint flags = texelFetch(tile_image, ivec3(first_tile, v), 0).x | texelFetch(tile_image, ivec3(last_tile, v), 0).x;
-  flags |= texelFetch(tile_image, ivec3(first_tile.x, last_tile.y, v), 0).x;
-  return (flags | texelFetch(tile_image, ivec3(last_tile.x, first_tile.y, v), 0).x) != 0u;
+  uint flags = imageLoad(tile_image, ivec3(first_tile, v)).x | imageLoad(tile_image, ivec3(last_tile, v)).x;
+  flags |= imageLoad(tile_image, ivec3(first_tile.x, last_tile.y, v)).x;
+  return (flags | imageLoad(tile_image, ivec3(last_tile.x, first_tile.y, v)).x) != 0u;
 }
 
 void main() {

@@ -17,7 +17,7 @@ struct LookUpPush {
 std::vector<gpu::Binding> describeBindings() {
   std::vector<gpu::Binding> bindings = SceneBuffers::bindings({});
   std::vector<VkDescriptorType> types = PixelSurfaces::descriptorTypes();
-  types.insert(types.end(), {kTable, kTexture, kTexture, kTexture, kStorage, kStorage});
+  types.insert(types.end(), {kUniforms, kStorage, kStorage, kStorage, kStorage, kStorage});
   for (const VkDescriptorType type : types) bindings.push_back({static_cast<std::uint32_t>(bindings.size()), type});
   return bindings;
 }
@@ -46,16 +46,15 @@ void LookUp::record(gpu::CommandRecorder& recorder, const RealtimeSample& sample
                     const DepositSurfaces& surfaces, const FluxMap& map) {
   const gpu::Image &irradiance = sample.target.irradiance, &direction = sample.target.direction;
   std::vector<Use> uses = buffers_.uses(
-      Access::kComputeRead, {Use(surfaces.views, Access::kComputeRead), Use(surfaces.surfaces, Access::kComputeRead),
-                             Use(map.flux(), Access::kComputeRead), Use(map.tiles(), Access::kComputeRead),
+      Access::kComputeRead, {Use(surfaces.views, Access::kComputeRead), Use(surfaces.surfaces, Access::kStorageRead),
+                             Use(map.flux(), Access::kStorageRead), Use(map.tiles(), Access::kStorageRead),
                              Use(irradiance, Access::kComputeWrite), Use(direction, Access::kComputeWrite)});
   sample.surfaces.appendUses(uses);
   recorder.pass("look-up", uses, [&](PassCommands& commands) {
     commands.bind(pipeline_);
-    const gpu::Sampler& nearest = buffers_.sampler();
     std::vector<Bound> bound =
-        buffers_.bound({Bound(kMapBindings, surfaces.views), Bound(kMapBindings + 1, surfaces.surfaces, nearest),
-                        Bound(kMapBindings + 2, map.flux(), nearest), Bound(kMapBindings + 3, map.tiles(), nearest),
+        buffers_.bound({Bound(kMapBindings, surfaces.views), Bound(kMapBindings + 1, surfaces.surfaces),
+                        Bound(kMapBindings + 2, map.flux()), Bound(kMapBindings + 3, map.tiles()),
                         Bound(kMapBindings + 4, irradiance), Bound(kMapBindings + 5, direction)});
     sample.surfaces.appendBound(kPixelBindings, bound);
     commands.bindResources(bound);

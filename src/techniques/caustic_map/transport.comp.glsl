@@ -17,10 +17,10 @@ layout(push_constant, scalar) uniform Push { TransportPush push; };
 #define tree_grid_lower push.tree_grid_lower
 #define tree_grid_scale push.tree_grid_scale
 
-layout(scalar, set = 0, binding = 7) readonly buffer Views {
+layout(scalar, set = 0, binding = 7) uniform Views {
   Surroundings surroundings;
   ViewRecord emission_views[kMostEmissionViews];
-  PictureView picture_views[];  // the same, then those of receivers
+  PictureView picture_views[kMostEmissionViews + kMostReceiverViews];  // the same, then those of receivers
 };
 layout(set = 0, binding = 16) uniform usamplerBuffer neighbour_table;
 layout(constant_id = 31) const uint kSearch = kSearchTree;

@@ -5,6 +5,7 @@
 
 #include "core/assert.h"
 #include "frame/passes.h"
+#include "frame/table.h"
 #include "shaders/techniques/transport.comp.h"
 
 namespace nephroid {
@@ -12,8 +13,6 @@ namespace {
 
 static_assert(sizeof(TransportPush) <= 128);
 
-/// Of receivers: the faces of a cube.
-constexpr std::uint32_t kMostReceiverViews = 6;
 /// Of transport.comp.glsl's own.
 constexpr std::uint32_t kFirstConstant = 30;
 
@@ -57,7 +56,7 @@ Transport::Transport(gpu::Device& device, const SceneBuffers& buffers)
       buffers_(buffers),
       lands_(anyLands(buffers)),
       cells_(device, buffers),
-      views_(device, sizeof(Views), VK_BUFFER_USAGE_STORAGE_BUFFER_BIT, gpu::MemoryIntent::kDevice, "views of a light"),
+      views_(makeUniforms<Views>(device, 1, "views of a light")),
       nothing_(device, sizeof(CellListHead) * kCellLists, VK_BUFFER_USAGE_STORAGE_BUFFER_BIT,
                gpu::MemoryIntent::kDevice, "no accounts, no lists") {}
 
@@ -81,9 +80,9 @@ const gpu::ComputePipeline& Transport::pipelineFor(const LightPictures& pictures
   gpu::ComputePipeline pipeline(
       device_,
       {.shader = shaders::transport_comp,
-       .bindings = SceneBuffers::bindings({kTable, kTable, kTexture, kTexture, kTexture, kTexture, kTexture,
-                                           kTable, kTable, kTexels,  kTexture, kTexture, kTable,   kTable,
-                                           kTable, kTable, kTable,   kTexels,  kTexels,  kTable}),
+       .bindings = SceneBuffers::bindings({kUniforms, kTable, kTexture, kTexture, kTexture, kTexture, kTexture,
+                                           kTable,    kTable, kTexels,  kTexture, kTexture, kTable,   kTable,
+                                           kTable,    kTable, kTable,   kTexels,  kTexels,  kTable}),
        .push_bytes = sizeof(TransportPush),
        .constants = std::move(constants)},
       "transport");
