@@ -54,9 +54,8 @@ Depths depthsOf(ReceiverView view, Surface s, float facing) {
 
 /// Between the four texels about a place, those that show other surfaces left out.
 /// @param facing  cosine between the surface's normal and the way to the view
-Incident incidentIn(uint v, Surface s, float facing) {
+Incident incidentIn(uint v, ReceiverView view, Surface s, float facing) {
   const uint channels = kReceiverDirections ? 2u * kFluxChannels : kFluxChannels;
-  ReceiverView view = receiver_views[v];
   Depths depths = depthsOf(view, s, facing);
   vec4 place = vec4(s.position, 1.0);
   vec2 texels = vec2(dot(view.row_x, place), dot(view.row_y, place));
@@ -85,6 +84,22 @@ Incident incidentIn(uint v, Surface s, float facing) {
   return Incident(scale * sum.irradiance, scale * sum.direction);
 }
 
+/// Views that a surface faces, a bit each. @param normal  unit
+uint viewsFaced(vec3 normal) {
+  uint faced = 0u;
+  [[unroll]] for (uint v = 0u; v < kReceiverViews; ++v)
+    if (-dot(receiver_views[v].forward, normal) >= kLeastFacing) faced |= 1u << v;
+  return faced;
+}
+
+/// Chosen among all, each at a constant place: see makeUniforms.
+ReceiverView receiverView(uint v) {
+  ReceiverView view = receiver_views[0];
+  [[unroll]] for (uint i = 1u; i < kReceiverViews; ++i)
+    if (i == v) view = receiver_views[i];
+  return view;
+}
+
 /// Radiance towards the eye of the caustics on a surface, W/m²/sr: diffuse lobes by the irradiance, glossy ones along
 /// its mean direction, as frame/caustic.comp.glsl.
 /// @param s   both normals on the side of the eye
@@ -92,11 +107,11 @@ Incident incidentIn(uint v, Surface s, float facing) {
 vec3 causticFrom(Surface s, MaterialPoint m, vec3 wo, float specular_alpha) {
   if (kReceiverViews == 0u) return vec3(0.0);
   Incident sum = Incident(vec3(0.0), vec3(0.0));
-  // Uniforms at constant places are read once for all threads.
-  [[unroll]] for (uint v = 0u; v < kReceiverViews; ++v) {
-    float facing = -dot(receiver_views[v].forward, s.geometric);
-    if (facing < kLeastFacing) continue;
-    Incident found = incidentIn(v, s, facing);
+  // Most surfaces face one view alone: a device that runs what only some threads do for all would pay for each view.
+  for (uint left = viewsFaced(s.geometric); left != 0u; left &= left - 1u) {
+    uint v = uint(findLSB(left));
+    ReceiverView view = receiverView(v);
+    Incident found = incidentIn(v, view, s, -dot(view.forward, s.geometric));
     sum.irradiance += found.irradiance;
     sum.direction += found.direction;
   }

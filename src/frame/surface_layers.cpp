@@ -1,7 +1,5 @@
 #include "frame/surface_layers.h"
 
-#include <algorithm>
-
 #include "core/assert.h"
 #include "frame/passes.h"
 #include "frame/table.h"
@@ -59,12 +57,12 @@ SurfaceLayers::SurfaceLayers(gpu::Device& device, const SceneBuffers& buffers, s
       next_(makeDraw(device, sides, true, buffers, "next layer")),
       places_(device,
               {.shader = shaders::surface_layers_comp,
-               .bindings = SceneBuffers::bindings({kTable, kStorage, kStorage, kStorage}),
+               .bindings = SceneBuffers::bindings({kUniforms, kStorage, kStorage, kStorage}),
                .push_bytes = sizeof(std::uint32_t),
                .constants = buffers.traits().constants()},
               "places of layers"),
       layer_count_(layers),
-      views_(makeUniforms<ViewRecord>(device, std::max(views, kMostViews), "views of layers")),
+      views_(makeUniforms<ViewRecord>(device, kMostViews, "views of layers")),
       seen_(makeLayers(device, kSeenFormat, size, views * layers,
                        VK_IMAGE_USAGE_COLOR_ATTACHMENT_BIT | VK_IMAGE_USAGE_STORAGE_BIT | VK_IMAGE_USAGE_SAMPLED_BIT,
                        "seen in layers")),
@@ -84,6 +82,7 @@ SurfaceLayers::SurfaceLayers(gpu::Device& device, const SceneBuffers& buffers, s
 void SurfaceLayers::record(gpu::CommandRecorder& recorder, std::span<const ViewRecord> views,
                            std::span<const std::size_t> draws) {
   view_count_ = static_cast<std::uint32_t>(views.size());
+  NEPHROID_ASSERT_LE(view_count_, kMostViews);
   NEPHROID_ASSERT_LE(view_count_ * layer_count_, seen_.desc().layers);
   recorder.upload(views_, std::as_bytes(views));
   for (std::uint32_t v = 0; v < view_count_; ++v)
