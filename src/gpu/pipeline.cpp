@@ -3,10 +3,12 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <string>
 #include <utility>
 
 #include "core/assert.h"
+#include "nephroid/error.h"
 
 namespace nephroid::gpu {
 namespace {
@@ -77,9 +79,43 @@ VkPipelineColorBlendAttachmentState describeBlend(Blend blend) {
 
 }  // namespace
 
+std::string findExceededLimit(std::span<const Binding> bindings, const VkPhysicalDeviceLimits& limits) {
+  struct Kind {
+    const char* name;
+    std::uint32_t most;
+    std::array<VkDescriptorType, 2> types;
+  };
+  const std::array<Kind, 4> kinds{{
+      {"uniform buffers",
+       limits.maxPerStageDescriptorUniformBuffers,
+       {VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER, VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER}},
+      {"storage buffers",
+       limits.maxPerStageDescriptorStorageBuffers,
+       {VK_DESCRIPTOR_TYPE_STORAGE_BUFFER, VK_DESCRIPTOR_TYPE_STORAGE_BUFFER}},
+      {"sampled images",
+       limits.maxPerStageDescriptorSampledImages,
+       {VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER, VK_DESCRIPTOR_TYPE_UNIFORM_TEXEL_BUFFER}},
+      {"storage images",
+       limits.maxPerStageDescriptorStorageImages,
+       {VK_DESCRIPTOR_TYPE_STORAGE_IMAGE, VK_DESCRIPTOR_TYPE_STORAGE_TEXEL_BUFFER}},
+  }};
+  for (const Kind& kind : kinds) {
+    const auto count = std::ranges::count_if(bindings, [&](const Binding& binding) {
+      return std::ranges::find(kind.types, binding.type) != kind.types.end();
+    });
+    if (count > kind.most) return fmt::format("{} {} ({} at the most)", count, kind.name, kind.most);
+  }
+  if (bindings.size() > limits.maxPerStageResources)
+    return fmt::format("{} resources ({} at the most)", bindings.size(), limits.maxPerStageResources);
+  return {};
+}
+
 Pipeline::Pipeline(Device& device, VkPipelineBindPoint bind_point, std::span<const Binding> bindings,
                    std::uint32_t push_bytes, std::string_view name)
     : device_(&device), bind_point_(bind_point), bindings_(bindings.begin(), bindings.end()) {
+  if (const std::string exceeded = findExceededLimit(bindings, device.limits()); !exceeded.empty())
+    throw DeviceError(fmt::format("the pass '{}' needs {} and {} allows no more; use another device or --device cpu",
+                                  name, exceeded, device.name()));
   const VkShaderStageFlags stages = bind_point == VK_PIPELINE_BIND_POINT_COMPUTE
                                         ? VK_SHADER_STAGE_COMPUTE_BIT
                                         : VK_SHADER_STAGE_VERTEX_BIT | VK_SHADER_STAGE_FRAGMENT_BIT;

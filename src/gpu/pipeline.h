@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <span>
+#include <string>
 #include <string_view>
 #include <vector>
 
@@ -17,6 +18,10 @@ struct Binding {
   std::uint32_t index = 0;
   VkDescriptorType type = VK_DESCRIPTOR_TYPE_STORAGE_BUFFER;
 };
+
+/// What there are more bindings of than a device lets a shader have, as "6 storage images (4 at the most)"; empty:
+/// nothing. Devices need not let it have more than 4 of some kinds.
+std::string findExceededLimit(std::span<const Binding> bindings, const VkPhysicalDeviceLimits& limits);
 
 /// A specialisation constant: 32 bits, a uint or an int or the bits of a float or a bool.
 struct Constant {
@@ -41,6 +46,7 @@ class Pipeline {
   VkDescriptorType typeOf(std::uint32_t binding) const;
 
  protected:
+  /// @throws DeviceError if the device lets no shader have so many bindings
   Pipeline(Device& device, VkPipelineBindPoint bind_point, std::span<const Binding> bindings, std::uint32_t push_bytes,
            std::string_view name);
   void nameIt(std::string_view name) const;
