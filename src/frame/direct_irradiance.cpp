@@ -15,7 +15,7 @@ struct DirectPush {
 };
 
 std::vector<gpu::Binding> describeBindings() {
-  std::vector<gpu::Binding> bindings = SceneBuffers::bindings({kTexels, kTexels, kTexels, kUniforms});
+  std::vector<gpu::Binding> bindings = SceneBuffers::bindings({kTexels, kTexels, kTexels, kTable});
   std::vector<VkDescriptorType> types = PixelSurfaces::descriptorTypes();
   types.insert(types.end(), {kStorage, kStorage});
   for (const VkDescriptorType type : types) bindings.push_back({static_cast<std::uint32_t>(bindings.size()), type});

@@ -135,7 +135,9 @@ void LightGrids::uploadTables(gpu::CommandRecorder& recorder) {
     views.insert(views.end(), light.views.begin(), light.views.end());
   }
   light_table_ = makeTable<LightRecord>(device_, recorder, records, "lights");
-  if (!few_lights_.valid()) few_lights_ = makeUniforms<LightRecord>(device_, kMostFewLights, "few lights");
+  if (!few_lights_.valid())
+    few_lights_ = gpu::Buffer(device_, kMostFewLights * sizeof(LightRecord), VK_BUFFER_USAGE_STORAGE_BUFFER_BIT,
+                              gpu::MemoryIntent::kDevice, "few lights");
   const auto few = std::span(records).first(std::min<std::size_t>(records.size(), kMostFewLights));
   if (!few.empty()) recorder.upload(few_lights_, std::as_bytes(few));
   view_table_ = makeTable<ViewRecord>(device_, recorder, views, "views of lights");

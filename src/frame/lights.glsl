@@ -4,7 +4,7 @@
 // lists for it (light_grid.comp.glsl). No bias, no resolution, no map.
 //
 // Needs, at the bindings that the including shader gives by NEPHROID_LIGHT_BINDINGS and the three numbers after it:
-// the table of lights, the heads and the nodes of their grids, and the first of the lights again as uniforms.
+// the table of lights, the heads and the nodes of their grids, and the first of the lights again as a buffer.
 #ifndef NEPHROID_LIGHTS_GLSL
 #define NEPHROID_LIGHTS_GLSL
 
@@ -15,12 +15,18 @@
 layout(set = 0, binding = NEPHROID_LIGHT_BINDINGS) uniform usamplerBuffer light_table;
 layout(set = 0, binding = NEPHROID_LIGHT_BINDINGS + 1) uniform usamplerBuffer grid_heads;
 layout(set = 0, binding = NEPHROID_LIGHT_BINDINGS + 2) uniform usamplerBuffer grid_nodes;
-// For places in the shader that ask for one light whose index is a constant: then each word is read once, and not by
-// every thread.
-layout(scalar, set = 0, binding = NEPHROID_LIGHT_BINDINGS + 3) uniform Lights { LightRecord lights[kMostFewLights]; };
+// Not uniforms: lights of a size are another each sample, and lavapipe would compile what depends on them each time.
+layout(scalar, set = 0, binding = NEPHROID_LIGHT_BINDINGS + 3) readonly buffer Lights { LightRecord light_records[]; };
 
 // How many lights there are, if they are few; else 0.
 layout(constant_id = 12) const uint kFewLights = 0u;
+/// The lights, if they are few, for places in a shader that ask for one whose index is a constant.
+LightRecord lights[kMostFewLights];
+/// To be called before threads may go different ways: there each word is read once, and not by every thread.
+void fetchFewLights() {
+  [[unroll]] for (uint i = 0u; i < kFewLights; ++i) lights[i] = light_records[i];
+}
+
 // What lights the scene has: the rest is left out.
 layout(constant_id = 13) const bool kLightsHavePoints = true;       // with cubes of views
 layout(constant_id = 14) const bool kLightsHaveDirectionals = true;

@@ -34,6 +34,7 @@ void shadePixel(uvec2 pixel) {
 }
 
 void main() {
+  fetchFewLights();
   uint i = gl_LocalInvocationID.x;
   uvec2 pixel = gl_WorkGroupID.xy * 8u + uvec2(i % 8u, i / 8u);
   if (kOfMixedBlocks) {

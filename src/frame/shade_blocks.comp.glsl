@@ -187,6 +187,7 @@ void shadeOrList(uvec2 place, uvec2 picture) {
 }
 
 void main() {
+  fetchFewLights();
   uvec2 picture = uvec2(imageSize(direct_image));
   if (kOfShadowedBlocks) {
     uint number = groupIndex() * groupBlocks(kShadowedBlocks) + gl_LocalInvocationID.x;

@@ -21,7 +21,7 @@ gpu::ComputePipeline makePass(gpu::Device& device, gpu::Spirv shader, std::vecto
   constants.insert(constants.end(), lights.begin(), lights.end());
   return {device,
           {.shader = shader,
-           .bindings = SceneBuffers::bindings({kTexels, kTexels, kTexels, kUniforms, kUniforms, kStorage, kTexture,
+           .bindings = SceneBuffers::bindings({kTexels, kTexels, kTexels, kTable, kUniforms, kStorage, kTexture,
                                                kTexels, kTexture, kStorage, kStorage, kTable}),
            .push_bytes = sizeof(SamplePush),
            .constants = std::move(constants)},

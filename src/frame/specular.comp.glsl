@@ -387,6 +387,7 @@ void followListed(uint packed_place) {
 }
 
 void main() {
+  fetchFewLights();
   uint list = kTask == kShow ? kFollowedPixels : kPoints;
   uint first = firstOf(list), count = heads[list].count, i = firstListed();
   if (i >= count) return;

@@ -205,6 +205,7 @@ void showCell(uvec2 cell) {
 }
 
 void main() {
+  fetchFewLights();
   uint first = firstOf(kLitCells + chain), count = heads[kLitCells + chain].count, i = firstListed();
   if (i >= count) return;
   do {

@@ -91,7 +91,7 @@ SpecularPass::SpecularPass(gpu::Device& device, gpu::CommandRecorder& recorder, 
   };
   const auto follow = [&](std::uint32_t task, const char* name) {
     return make(shaders::specular_comp,
-                {kTexels, kTexels, kTexels, kUniforms, kUniforms, kStoredTexels, kTexels, kTexels, kTexture, kStorage,
+                {kTexels, kTexels, kTexels, kTable, kUniforms, kStoredTexels, kTexels, kTexels, kTexture, kStorage,
                  kTexels, kTexels, kStorage, kTable},
                 join(join(join(traits.pathConstants(), of_ends), inputs.tree.constants()), {{kTaskConstant, task}}),
                 name, true);
@@ -105,7 +105,7 @@ SpecularPass::SpecularPass(gpu::Device& device, gpu::CommandRecorder& recorder, 
     agreement_ = make(shaders::specular_agreement_comp, {kStorage, kTable, kTexels, kStoredTexels},
                       traits.pathConstants(), "specular agreement");
     lit_ = make(shaders::specular_lit_comp,
-                {kTexels, kTexels, kTexels, kUniforms, kStorage, kTable, kTexels, kTexels, kTexture, kStorage, kTexels},
+                {kTexels, kTexels, kTexels, kTable, kStorage, kTable, kTexels, kTexels, kTexture, kStorage, kTexels},
                 join(traits.constants(), of_ends), "specular lit", true);
   }
   fitPicture(device);

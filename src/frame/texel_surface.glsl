@@ -89,11 +89,9 @@ float texelSize(float w, vec2 size) {
 /// World area that the texel covers on the surface, m²: ω·d²/cos θ, of parallel light A/cos θ (DESIGN §2).
 float texelArea(TexelSurface s, vec2 texels, vec2 size) {
   float area = 4.0 * length(views[0].right) * length(views[0].up) / (size.x * size.y);
-  if (views[0].is_orthographic == 0u) {
-    vec2 film = texels / size * 2.0 - 1.0;
-    area = cellSolidAngle(film.x * length(views[0].right), film.y * length(views[0].up), area) * s.distance_2;
-  }
-  return area / max(s.cos_view, 1e-3);
+  vec2 film = texels / size * 2.0 - 1.0;
+  float of_cone = cellSolidAngle(film.x * length(views[0].right), film.y * length(views[0].up), area) * s.distance_2;
+  return (views[0].is_orthographic != 0u ? area : of_cone) / max(s.cos_view, 1e-3);
 }
 
 /// Whether a place lies on the surface of a texel: on its plane, but for what the surface bends over `reach`.
