@@ -20,7 +20,7 @@ enum class Reconstruction : std::uint8_t {
 
 /// The picture's surfaces: of each texel the place in the world and the normal, as SurfaceLayers has them.
 struct DepositSurfaces {
-  const gpu::Buffer& views;    ///< ViewRecords: one, the faces of a cube, or those of a ReceiverMap
+  const gpu::Buffer& views;    ///< kMostViews ViewRecords as uniforms: of one, a cube's faces, or a ReceiverMap's
   const gpu::Image& surfaces;  ///< SurfaceLayers::surfaces
   std::uint32_t layer_count = 1;
   const ReceiverViews* shared = nullptr;  ///< of what Deposit is made for

@@ -94,7 +94,7 @@ RealtimeFrame::RealtimeFrame(gpu::Device& device, const SceneData& scene, const 
       settings_(settings),
       bounds_(scene.bounds()),
       recorder_(device),
-      camera_view_(makeUniforms<ViewRecord>(device, 1, "camera")),
+      camera_view_(makeUniforms<ViewRecord>(device, kMostViews, "camera")),
       nothing_(device, {.format = kFloat4, .usage = VK_IMAGE_USAGE_SAMPLED_BIT}, "nothing"),
       environment_sampler_(device, {.address_u = VK_SAMPLER_ADDRESS_MODE_REPEAT}, "environment") {
   recorder_.begin();

@@ -118,7 +118,7 @@ struct ViewRecord {
   float pad_up;
 };
 
-/// Views of a picture at the most: of a cube, or along axes.
+/// Views in a table of them at the most, which has room for so many: the faces of a cube, or those along axes.
 NEPHROID_CONST uint kMostViews = 6u;
 
 /// How to find places from somebody else's depths and normals.

@@ -135,11 +135,8 @@ void LightGrids::uploadTables(gpu::CommandRecorder& recorder) {
     views.insert(views.end(), light.views.begin(), light.views.end());
   }
   light_table_ = makeTable<LightRecord>(device_, recorder, records, "lights");
-  if (!few_lights_.valid())
-    few_lights_ = gpu::Buffer(device_, kMostFewLights * sizeof(LightRecord), VK_BUFFER_USAGE_STORAGE_BUFFER_BIT,
-                              gpu::MemoryIntent::kDevice, "few lights");
-  const auto few = std::span(records).first(std::min<std::size_t>(records.size(), kMostFewLights));
-  if (!few.empty()) recorder.upload(few_lights_, std::as_bytes(few));
+  lights_buffer_ =
+      gpu::makeBuffer<LightRecord>(device_, recorder, records, VK_BUFFER_USAGE_STORAGE_BUFFER_BIT, "lights");
   view_table_ = makeTable<ViewRecord>(device_, recorder, views, "views of lights");
 }
 
@@ -204,14 +201,14 @@ bool LightGrids::checkCapacity() {
 }
 
 std::vector<gpu::Bound> LightGrids::bound(std::uint32_t first) const {
-  return {{first, light_table_}, {first + 1, heads_}, {first + 2, nodes_}, {first + 3, few_lights_}};
+  return {{first, light_table_}, {first + 1, heads_}, {first + 2, nodes_}, {first + 3, lights_buffer_}};
 }
 
 std::vector<gpu::Use> LightGrids::uses() const {
   return {{light_table_, Access::kComputeRead},
           {heads_, Access::kComputeRead},
           {nodes_, Access::kComputeRead},
-          {few_lights_, Access::kComputeRead}};
+          {lights_buffer_, Access::kComputeRead}};
 }
 
 }  // namespace nephroid

@@ -69,7 +69,7 @@ class LightGrids {
   std::uint32_t grid_size_;
   gpu::ComputePipeline pipeline_;
   gpu::Buffer light_table_, view_table_, heads_, nodes_;
-  gpu::Buffer few_lights_, counters_;
+  gpu::Buffer lights_buffer_, counters_;
   std::vector<Light> lights_;
 };
 

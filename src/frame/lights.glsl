@@ -4,7 +4,7 @@
 // lists for it (light_grid.comp.glsl). No bias, no resolution, no map.
 //
 // Needs, at the bindings that the including shader gives by NEPHROID_LIGHT_BINDINGS and the three numbers after it:
-// the table of lights, the heads and the nodes of their grids, and the first of the lights again as a buffer.
+// the table of lights, the heads and the nodes of their grids, and the lights again as a buffer.
 #ifndef NEPHROID_LIGHTS_GLSL
 #define NEPHROID_LIGHTS_GLSL
 

@@ -16,8 +16,9 @@ struct Ray {
 /// @param film  in [-1, 1]², y down
 Ray linearRayThrough(ViewRecord view, vec2 film) {
   vec3 across = film.x * view.right - film.y * view.up;
-  if (view.is_orthographic != 0u) return Ray(view.eye + across, view.forward);
-  return Ray(view.eye, view.forward + across);
+  // No branch: see lookAt of frame/texel_surface.glsl.
+  bvec3 is_parallel = bvec3(view.is_orthographic != 0u);
+  return Ray(mix(view.eye, view.eye + across, is_parallel), mix(view.forward + across, view.forward, is_parallel));
 }
 
 /// Through a place of a view's picture. @param film  in [-1, 1]², y down

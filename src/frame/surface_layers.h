@@ -37,7 +37,7 @@ class SurfaceLayers {
   std::uint32_t roomForViews() const { return seen_.desc().layers / layer_count_; }
   std::uint32_t viewCount() const { return view_count_; }
   std::uint32_t layerCount() const { return layer_count_; }
-  /// ViewRecords.
+  /// kMostViews ViewRecords, as uniforms or as a table.
   const gpu::Buffer& views() const { return views_; }
   /// R32G32_UINT array: instance + 1 (0: nothing), triangle of its mesh.
   const gpu::Image& seen() const { return seen_; }

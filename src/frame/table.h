@@ -26,6 +26,7 @@ gpu::Buffer makeTable(gpu::Device& device, gpu::CommandRecorder& recorder, std::
 /// A buffer of `count` records that shaders read as uniforms. A word at a constant place of it is read once for all
 /// threads wherever it is asked for. Of a storage buffer, a device that is a CPU reads it for each thread anew where
 /// threads may go different ways, which took half of the time of some passes.
+/// It may be a table (frame/passes.h) of other passes, too.
 template <class Record>
 gpu::Buffer makeUniforms(gpu::Device& device, std::size_t count, std::string_view name) {
   return {device, count * sizeof(Record), VK_BUFFER_USAGE_UNIFORM_BUFFER_BIT | VK_BUFFER_USAGE_STORAGE_BUFFER_BIT,

@@ -50,11 +50,16 @@ struct TexelSurface {
   float distance_2;  // m², to the eye
 };
 
+/// From the eye to a place, of any length. No branch: lavapipe compiles a shader anew, at times each time, for the
+/// uniforms that alone decide one.
+/// @param forward  of the view, if it is parallel
+vec3 lookAt(vec3 place, vec3 forward) {
+  return mix(place - views[0].eye, forward, bvec3(views[0].is_orthographic != 0u));
+}
+
 /// @param forward  of the view, if it is parallel
 TexelSurface describeTexel(vec4 texel, vec3 forward) {
-  vec3 normal = unpackUnitVector(floatBitsToUint(texel.w));
-  // No branch: lavapipe compiles a shader anew, at times each time, for the uniforms that alone decide one.
-  vec3 along = mix(texel.xyz - views[0].eye, forward, bvec3(views[0].is_orthographic != 0u));
+  vec3 normal = unpackUnitVector(floatBitsToUint(texel.w)), along = lookAt(texel.xyz, forward);
   float distance_2 = dot(along, along);
   float cos_view = dot(normal, along) * inversesqrt(max(distance_2, 1e-37));
   return TexelSurface(texel.xyz, cos_view > 0.0 ? -normal : normal, abs(cos_view), distance_2);
@@ -74,9 +79,7 @@ vec3 unpackDirection(uint packed_vector) {
 /// @param texel    as describeTexel
 /// @param forward  of the view, if it is parallel
 bool isLitAt(vec4 texel, vec3 forward, vec3 first, vec3 second, float reach, vec3 direction) {
-  vec3 normal = unpackDirection(floatBitsToUint(texel.w));
-  // No branch: lavapipe compiles a shader anew, at times each time, for the uniforms that alone decide one.
-  vec3 along = mix(texel.xyz - views[0].eye, forward, bvec3(views[0].is_orthographic != 0u));
+  vec3 normal = unpackDirection(floatBitsToUint(texel.w)), along = lookAt(texel.xyz, forward);
   float off = min(abs(dot(normal, first - texel.xyz)), abs(dot(normal, second - texel.xyz)));
   return off * off <= reach * reach * dot(normal, normal) && dot(normal, along) * dot(normal, direction) > 0.0;
 }

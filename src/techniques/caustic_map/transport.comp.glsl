@@ -19,8 +19,8 @@ layout(push_constant, scalar) uniform Push { TransportPush push; };
 
 layout(scalar, set = 0, binding = 7) uniform Views {
   Surroundings surroundings;
-  ViewRecord emission_views[kMostEmissionViews];
-  PictureView picture_views[kMostEmissionViews + kMostReceiverViews];  // the same, then those of receivers
+  ViewRecord emission_views[kMostViews];
+  PictureView picture_views[2u * kMostViews];  // the same, then those of receivers
 };
 layout(set = 0, binding = 16) uniform usamplerBuffer neighbour_table;
 layout(constant_id = 31) const uint kSearch = kSearchTree;

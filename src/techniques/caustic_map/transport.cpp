@@ -19,8 +19,8 @@ constexpr std::uint32_t kFirstConstant = 30;
 /// As the shader's buffer of that name.
 struct Views {
   Surroundings surroundings;
-  ViewRecord emission[kMostEmissionViews];
-  PictureView pictures[kMostEmissionViews + kMostReceiverViews];
+  ViewRecord emission[kMostViews];
+  PictureView pictures[2 * kMostViews];
 };
 
 bool anyLands(const SceneBuffers& buffers) {
@@ -36,8 +36,8 @@ PictureView pictureView(const ViewRecord& view) {
 }
 
 Views viewsOf(const LightPictures& pictures) {
-  NEPHROID_ASSERT_LE(pictures.emission_views.size(), std::size_t{kMostEmissionViews});
-  NEPHROID_ASSERT_LE(pictures.receiver_views.size(), std::size_t{kMostReceiverViews});
+  NEPHROID_ASSERT_LE(pictures.emission_views.size(), std::size_t{kMostViews});
+  NEPHROID_ASSERT_LE(pictures.receiver_views.size(), std::size_t{kMostViews});
   Views views{};
   views.surroundings = {.generator_lower = pictures.generator_bounds.lower,
                         .generator_upper = pictures.generator_bounds.upper,

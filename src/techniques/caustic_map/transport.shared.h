@@ -97,10 +97,6 @@ struct Fork {
 };
 NEPHROID_CONST uint kInteriorWords = 12u;
 
-/// Views of emission and of receivers: the faces of a cube at most.
-NEPHROID_CONST uint kMostEmissionViews = 6u;
-NEPHROID_CONST uint kMostReceiverViews = 6u;
-
 /// What it takes to find a place in a view's picture.
 struct PictureView {
   vec4 clip_row_x;  // of ViewRecord
