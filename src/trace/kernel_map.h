@@ -1,6 +1,11 @@
-// Photons, each under a kernel of its own radius, found by place: grids of radii a factor of two apart.
+// Photons, each spread over a disc of the surface on which it ended, found by place.
+//
+// Each is entered in every cell of a grid that its disc meets, so that a place looks into one cell. Discs whose radii
+// are within a factor of two share a grid, whose cells are as wide as the radius of the largest. Built in the order of
+// the photons, so that sums over a place do not depend on threads.
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
 #include <span>
 #include <vector>
@@ -10,10 +15,16 @@
 
 namespace nephroid {
 
-/// A photon spread evenly over a disc.
+/// A photon under Epanechnikov's kernel, 2 (1 − r²) over the area of its disc.
 struct KernelPhoton : GridPhoton {
-  float radius_squared;  ///< of the disc, m²
-  float inverse_area;    ///< of the disc, 1/m²
+  float inverse_squared_radius;  ///< of the disc, 1/m²
+
+  /// 1/m². @param squared_radius  r², below 1, in radii of the disc
+  float weightAt(float squared_radius) const { return 2.0F / kPi * inverse_squared_radius * (1.0F - squared_radius); }
+  /// The same of a disc of half the area.
+  float halfWeightAt(float squared_radius) const {
+    return 4.0F / kPi * inverse_squared_radius * std::max(1.0F - 2.0F * squared_radius, 0.0F);
+  }
 };
 
 class KernelMap {
@@ -22,25 +33,58 @@ class KernelMap {
   /// @param radii  not made by default, where there are photons  @param scale  of all radii
   KernelMap(std::span<const GridPhoton> photons, const KernelRadii& radii, float scale);
 
-  bool empty() const { return grids_.empty(); }
+  bool empty() const { return photons_.empty(); }
 
-  /// Calls `visit(photon, distance²)` for every photon whose disc holds `position`, if that is on a plane of this
-  /// normal: a disc is thin, so that it does not reach around corners.
+  /// Calls `visit(photon, r²)` for every photon whose disc holds `position`, if that is on a plane of this normal: a
+  /// disc is thin, so that it does not reach around corners.
+  /// @param normal  unit
   template <class Visit>
   void visitKernels(vec3 position, vec3 normal, Visit&& visit) const {
-    for (const BasicPhotonGrid<KernelPhoton>& grid : grids_) {
-      grid.visitDisc(position, normal, kKernelFlatness, [&](const KernelPhoton& photon) {
+    for (const Grid& grid : grids_) {
+      const std::uint32_t bucket = grid.bucketOf(grid.cellAt(position));
+      for (std::uint32_t i = grid.begin[bucket]; i < grid.begin[bucket + 1]; ++i) {
+        const KernelPhoton& photon = photons_[grid.entries[i]];
         const vec3 offset = photon.position - position;
-        const float squared = dot(offset, offset), height = dot(offset, normal);
-        if (squared <= photon.radius_squared &&
-            height * height <= kKernelFlatness * kKernelFlatness * photon.radius_squared)
-          visit(photon, squared);
-      });
+        const float squared = dot(offset, offset) * photon.inverse_squared_radius;
+        if (squared < 1.0F && isThin(photon, offset, normal)) visit(photon, squared);
+      }
     }
   }
 
  private:
-  std::vector<BasicPhotonGrid<KernelPhoton>> grids_;
+  /// Cells of one width, by a hash of where they are.
+  struct Grid {
+    float inverse_cell = 0.0F;  ///< 1/m
+    std::uint32_t mask = 0;
+    std::vector<std::uint32_t> begin;    ///< bucket count + 1 offsets
+    std::vector<std::uint32_t> entries;  ///< into photons_, by bucket
+
+    vec3 cellAt(vec3 position) const;
+    vec3 middleOf(vec3 cell) const;
+    std::uint32_t bucketOf(vec3 cell) const;
+  };
+  class GridBuilder;
+
+  /// Is either off the other's plane by no more than a share of the disc's radius?
+  static bool isThin(const KernelPhoton& photon, vec3 offset, vec3 normal) {
+    constexpr float kMost = kKernelFlatness * kKernelFlatness;
+    const float height = dot(offset, normal), own = dot(offset, photon.normal);
+    return std::max(height * height, own * own) * photon.inverse_squared_radius <= kMost;
+  }
+
+  std::vector<KernelPhoton> photons_;
+  std::vector<Grid> grids_;
 };
+
+/// Where the origin lies in its cell: not on its border, for many scenes have a floor there, which would then lie in
+/// two layers of cells.
+inline constexpr float kOriginInCell = 0.37F;
+
+inline vec3 KernelMap::Grid::cellAt(vec3 position) const { return glm::floor(position * inverse_cell + kOriginInCell); }
+inline vec3 KernelMap::Grid::middleOf(vec3 cell) const { return (cell + (0.5F - kOriginInCell)) / inverse_cell; }
+
+inline std::uint32_t KernelMap::Grid::bucketOf(vec3 cell) const {
+  return hashOfCell(static_cast<int>(cell.x), static_cast<int>(cell.y), static_cast<int>(cell.z)) & mask;
+}
 
 }  // namespace nephroid

@@ -1,8 +1,7 @@
 // Photons where they ended, found again by place: a hash grid over one batch (Jensen 2001; cells as in Teschner 2003).
 //
-// Cells are as wide as the diameter of a search, so a search looks at eight, less those that it does not reach. Blocks
-// of 4 × 4 × 4 cells are hashed, not single ones: what is near in space is near in memory, and searches side by side
-// find it in the cache. Built in the order of the photons, so that sums over a search do not depend on threads.
+// Cells are as wide as the diameter of a search, so a search looks at eight, less those that it does not reach. Built
+// in the order of the photons, so that sums over a search do not depend on threads.
 #pragma once
 
 #include <bit>
@@ -15,14 +14,25 @@
 
 namespace nephroid {
 
+/// Hash of a grid's cell. Blocks of 4 × 4 × 4 cells are hashed, not single ones: what is near in space is near in
+/// memory, and searches side by side find it in the cache.
+inline std::uint32_t hashOfCell(int x, int y, int z) {
+  const std::uint32_t block = static_cast<std::uint32_t>(x >> 2) * 73856093U ^
+                              static_cast<std::uint32_t>(y >> 2) * 19349663U ^
+                              static_cast<std::uint32_t>(z >> 2) * 83492791U;
+  const auto within = static_cast<std::uint32_t>((x & 3) | (y & 3) << 2 | (z & 3) << 4);
+  return block << 6 | within;
+}
+
 /// Height of a kernel's disc over its radius: thin enough not to look around corners, thick enough for curved ground.
 inline constexpr float kKernelFlatness = 0.3F;
 
 /// What a receiver needs of a photon that ended on it.
 struct GridPhoton {
-  vec3 position;  ///< world, m
-  vec3 dir;       ///< unit, along the travel of light
-  vec3 flux;      ///< W
+  vec3 position;      ///< world, m
+  vec3 dir;           ///< unit, along the travel of light
+  vec3 flux;          ///< W
+  vec3 normal{0.0F};  ///< of the surface there, unit; where it is asked for
 };
 
 /// @tparam Photon  has a `position`
@@ -53,26 +63,18 @@ class BasicPhotonGrid {
   /// Calls `visit(photon)` for every photon within the radius of `position`.
   template <class Visit>
   void visitNear(vec3 position, Visit&& visit) const {
-    visitDisc(position, vec3(0.0F), 1.0F, visit);
-  }
-  /// The same, only of those near a plane through it: off it by at most `flatness` times the radius.
-  /// @param normal  of the plane, unit
-  template <class Visit>
-  void visitDisc(vec3 position, vec3 normal, float flatness, Visit&& visit) const {
     if (empty()) return;
     const vec3 place = position * inverse_cell_, first = glm::floor(place - 0.5F);
     const int x0 = static_cast<int>(first.x), y0 = static_cast<int>(first.y), z0 = static_cast<int>(first.z);
-    const float squared_radius = radius_ * radius_, thickness = flatness * radius_;
-    // How far the disc is from a cell's middle, along the normal, where both only just touch; in cells.
-    const float touch = 0.5F * (std::abs(normal.x) + std::abs(normal.y) + std::abs(normal.z) + flatness);
+    const float squared_radius = radius_ * radius_;
     std::uint32_t seen[8];
     int count = 0;
     for (int k = 0; k < 8; ++k) {
       const int dx = k & 1, dy = (k >> 1) & 1, dz = k >> 2;
       const vec3 to_middle = first + vec3(dx, dy, dz) + 0.5F - place;
       const vec3 outside = glm::max(glm::abs(to_middle) - 0.5F, vec3(0.0F));
-      // A little more than the radius and the touch, for rounding: photons are asked one by one.
-      if (dot(outside, outside) > 0.2501F || std::abs(dot(normal, to_middle)) > 1.0001F * touch) continue;
+      // A little more than the radius, for rounding: photons are asked one by one.
+      if (dot(outside, outside) > 0.2501F) continue;
       const std::uint32_t bucket = hashCell(x0 + dx, y0 + dy, z0 + dz);
       // Two cells may share a bucket; its photons count once.
       bool repeated = false;
@@ -81,20 +83,14 @@ class BasicPhotonGrid {
       seen[count++] = bucket;
       for (std::uint32_t i = begin_[bucket]; i < begin_[bucket + 1]; ++i) {
         const vec3 offset = photons_[i].position - position;
-        if (dot(offset, offset) <= squared_radius && std::abs(dot(offset, normal)) <= thickness) visit(photons_[i]);
+        if (dot(offset, offset) <= squared_radius) visit(photons_[i]);
       }
     }
   }
 
  private:
   static int cellOf(float x) { return static_cast<int>(std::floor(x)); }
-  std::uint32_t hashCell(int x, int y, int z) const {
-    const std::uint32_t block = static_cast<std::uint32_t>(x >> 2) * 73856093U ^
-                                static_cast<std::uint32_t>(y >> 2) * 19349663U ^
-                                static_cast<std::uint32_t>(z >> 2) * 83492791U;
-    const auto within = static_cast<std::uint32_t>((x & 3) | (y & 3) << 2 | (z & 3) << 4);
-    return (block << 6 | within) & mask_;
-  }
+  std::uint32_t hashCell(int x, int y, int z) const { return hashOfCell(x, y, z) & mask_; }
 
   std::vector<Photon> photons_;       ///< bucket by bucket
   std::vector<std::uint32_t> begin_;  ///< bucket count + 1 offsets

@@ -11,6 +11,8 @@
 namespace nephroid {
 namespace {
 
+constexpr vec3 kNormal(0.0F, 0.8F, -0.6F);
+
 /// Photons at random over a tilted square of side 2, denser where `density`, at most 1, is.
 std::vector<GridPhoton> makePhotons(int count, unsigned seed, const std::function<float(vec2)>& density) {
   std::mt19937 random(seed);
@@ -19,12 +21,11 @@ std::vector<GridPhoton> makePhotons(int count, unsigned seed, const std::functio
   while (photons.size() < static_cast<std::size_t>(count)) {
     const vec2 at(side(random), side(random));
     if (chance(random) < density(at))
-      photons.push_back({vec3(at.x, 0.6F * at.y, 0.8F * at.y), vec3(0, -1, 0), vec3(1.0F)});
+      photons.push_back({vec3(at.x, 0.6F * at.y, 0.8F * at.y), vec3(0, -1, 0), vec3(1.0F), kNormal});
   }
   return photons;
 }
 vec3 onPlane(float u, float v) { return {u, 0.6F * v, 0.8F * v}; }
-constexpr vec3 kNormal(0.0F, 0.8F, -0.6F);
 
 int countWithin(const std::vector<GridPhoton>& photons, vec3 centre, float radius) {
   int count = 0;
@@ -73,20 +74,58 @@ TEST(KernelMap, FindsExactlyTheKernelsThatHoldAPoint) {
   int all = 0;
   for (int i = 0; i < 500; ++i) {
     const vec3 at = onPlane(side(random), side(random)) + height(random) * kNormal;
+    const vec3 normal = normalize(kNormal + vec3(20.0F * height(random)));
     int expected = 0, found = 0;
     for (const GridPhoton& p : photons) {
-      const float radius = kScale * radii.at(p.position);
+      const float radius = kScale * radii.at(p.position), most = kKernelFlatness * radius;
       const vec3 offset = p.position - at;
-      expected += dot(offset, offset) <= radius * radius && std::abs(dot(offset, kNormal)) <= kKernelFlatness * radius;
+      expected += dot(offset, offset) < radius * radius && std::abs(dot(offset, normal)) <= most &&
+                  std::abs(dot(offset, kNormal)) <= most;
     }
-    map.visitKernels(at, kNormal, [&](const KernelPhoton& photon, float distance_squared) {
+    map.visitKernels(at, normal, [&](const KernelPhoton& photon, float squared_radius) {
       ++found;
-      EXPECT_LE(distance_squared, photon.radius_squared);
+      EXPECT_NEAR(squared_radius, dot(photon.position - at, photon.position - at) * photon.inverse_squared_radius,
+                  1e-6);
     });
     EXPECT_EQ(found, expected);
     all += found;
   }
   EXPECT_GT(all, 1000);
+}
+
+TEST(KernelMap, SpreadsThePhotonOverItsDiscWithoutARest) {
+  const std::vector<GridPhoton> one = makePhotons(1, 9, [](vec2) { return 1.0F; });
+  const KernelMap map(one, KernelRadii(one, 10.0F, 0.1F, 0.1F), 1.0F);
+  constexpr int kPlaces = 200;
+  constexpr float kSide = 0.25F / kPlaces;
+  double whole = 0.0, half = 0.0;
+  for (int i = 0; i < kPlaces * kPlaces; ++i) {
+    const vec3 off = onPlane(kSide * (static_cast<float>(i % kPlaces) - 0.5F * kPlaces),
+                             kSide * (static_cast<float>(i / kPlaces) - 0.5F * kPlaces));
+    map.visitKernels(one[0].position + off, kNormal, [&](const KernelPhoton& photon, float squared_radius) {
+      whole += photon.weightAt(squared_radius) * kSide * kSide;
+      half += photon.halfWeightAt(squared_radius) * kSide * kSide;
+    });
+  }
+  EXPECT_NEAR(whole, 1.0, 1e-3);
+  EXPECT_NEAR(half, 1.0, 1e-3);
+}
+
+TEST(KernelMap, DoesNotReachAroundCorners) {
+  // A wall above a floor: what ended on either, half a radius from where they meet, does not count on the other.
+  constexpr float kRadius = 0.1F, kOff = 0.5F * kRadius;
+  const vec3 up(0, 1, 0), out(0, 0, 1);
+  const std::vector<GridPhoton> photons{{kOff * up, -out, vec3(1.0F), out}, {kOff * out, -up, vec3(1.0F), up}};
+  const KernelMap map(photons, KernelRadii(photons, 10.0F, kRadius, kRadius), 1.0F);
+  const auto count = [&](vec3 at, vec3 normal) {
+    int found = 0;
+    map.visitKernels(at, normal, [&](const KernelPhoton&, float) { ++found; });
+    return found;
+  };
+  EXPECT_EQ(count(kOff * up, out), 1);
+  EXPECT_EQ(count(kOff * out, up), 1);
+  // Near the wall's foot the floor's plane is near; the wall's own is not.
+  EXPECT_EQ(count(vec3(0, 0, 0.9F * kOff) + 0.2F * kOff * up, up), 1);
 }
 
 /// A bright line on dim ground, as caustics are: mean over many batches of the profile that kernels make of it, over
@@ -103,8 +142,8 @@ double errorOfLine(const std::function<KernelRadii(const std::vector<GridPhoton>
     for (int i = 0; i < kColumns * kRows; ++i) {
       const vec3 at = onPlane(0.005F * (static_cast<float>(i % kColumns - kColumns / 2) + 0.5F),
                               0.04F * static_cast<float>(i / kColumns - kRows / 2));
-      map.visitKernels(at, kNormal, [&](const KernelPhoton& p, float) {
-        profile[static_cast<std::size_t>(i % kColumns)] += p.inverse_area / (scale * kBatches * kRows);
+      map.visitKernels(at, kNormal, [&](const KernelPhoton& p, float squared_radius) {
+        profile[static_cast<std::size_t>(i % kColumns)] += p.weightAt(squared_radius) / (scale * kBatches * kRows);
       });
     }
   }

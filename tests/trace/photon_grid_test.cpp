@@ -30,28 +30,6 @@ TEST(PhotonGrid, FindsExactlyThePhotonsWithinTheRadius) {
   }
 }
 
-TEST(PhotonGrid, FindsExactlyThePhotonsOfADisc) {
-  const auto photons = makePhotons(3000, 2.0F);
-  constexpr float kRadius = 0.25F, kFlatness = 0.3F;
-  const PhotonGrid grid(photons, kRadius);
-  std::mt19937 random(13);
-  std::uniform_real_distribution<float> uniform(-1.0F, 1.0F);
-  int all = 0;
-  for (int i = 0; i < 600; ++i) {
-    const vec3 at(2.2F * uniform(random), 0.2F * uniform(random), 2.2F * uniform(random));
-    const vec3 normal = normalize(vec3(uniform(random), uniform(random), uniform(random)));
-    int expected = 0, found = 0;
-    for (const GridPhoton& p : photons) {
-      const vec3 offset = p.position - at;
-      expected += dot(offset, offset) <= kRadius * kRadius && std::abs(dot(offset, normal)) <= kFlatness * kRadius;
-    }
-    grid.visitDisc(at, normal, kFlatness, [&](const GridPhoton&) { ++found; });
-    EXPECT_EQ(found, expected);
-    all += found;
-  }
-  EXPECT_GT(all, 1000);
-}
-
 TEST(PhotonGrid, OfNothingFindsNothing) {
   const PhotonGrid grid({}, 1.0F);
   grid.visitNear(vec3(0), [](const GridPhoton&) { FAIL(); });

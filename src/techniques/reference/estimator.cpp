@@ -42,15 +42,15 @@ ParamSpec makeEstimatorParam() {
       "for checking (needs lights with a size); manifold: walks from what is seen over one or two smooth interfaces to "
       "the lights, photons for all other ways; vcm: photons seen, gathered and connected, and paths, each weighted by "
       "how well it does (no dispersion); auto: measures whether paths are better, as under large lights; else "
-      "footprint, or light where errors are to be estimated",
+      "footprint, or light where errors of caustics alone are to be estimated",
       choices};
 }
 
-EstimatorChoice chooseEstimators(std::string_view name, bool estimates_errors, ReferenceWorld& world,
-                                 const Camera& camera, int width, int height, const LayerNeeds& needs) {
+EstimatorChoice chooseEstimators(std::string_view name, bool may_blur, ReferenceWorld& world, const Camera& camera,
+                                 int width, int height, const LayerNeeds& needs) {
   const auto found = std::find(kNames.begin(), kNames.end(), name);
   if (found != kNames.end()) return choiceOfOne(static_cast<Estimator>(found - kNames.begin()));
-  EstimatorChoice choice = choiceOfOne(estimates_errors ? Estimator::kLight : Estimator::kFootprint);
+  EstimatorChoice choice = choiceOfOne(may_blur ? Estimator::kFootprint : Estimator::kLight);
   choice.figures = measureEstimators(world, camera, width, height, needs);
   const auto isWon = [](const std::optional<EstimatorFigures>& f) { return f && f->pathsAreBetter(); };
   if (isWon(choice.figures.caustic)) choice.caustic = Estimator::kPath;

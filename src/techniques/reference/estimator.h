@@ -8,7 +8,8 @@
 //               photons, each for the one pixel that sees it, for all longer or rougher ways
 //   vcm         all of these by their weights: vertex connection and merging (see vcm/vcm.h)
 //   auto        path where a pilot shows that it is better, for each kind of caustic; else footprint, or light where
-//               errors are to be estimated, for a footprint's blur is in no standard error
+//               errors of caustics alone are to be estimated: there a footprint's blur, which is in no standard error,
+//               counts as much as its noise
 //
 // Caustics in mirrors and through glass can be met by paths from the eye alone, so they are gathered by all but `path`
 // and `vcm`; `manifold` gathers what its walks cannot make.
@@ -40,11 +41,11 @@ struct EstimatorChoice {
 };
 
 /// What a value of the parameter stands for in a scene.
-/// @param name              as checked by the parameter; `auto` measures where there is something to choose
-/// @param estimates_errors  whether standard errors are wanted
-/// @param world             seen by `camera`, `width` × `height` pixels; others meanwhile (see measureEstimators)
-EstimatorChoice chooseEstimators(std::string_view name, bool estimates_errors, ReferenceWorld& world,
-                                 const Camera& camera, int width, int height, const LayerNeeds& needs);
+/// @param name      as checked by the parameter; `auto` measures where there is something to choose
+/// @param may_blur  whether caustics may have a blur that no standard error knows
+/// @param world     seen by `camera`, `width` × `height` pixels; others meanwhile (see measureEstimators)
+EstimatorChoice chooseEstimators(std::string_view name, bool may_blur, ReferenceWorld& world, const Camera& camera,
+                                 int width, int height, const LayerNeeds& needs);
 std::string_view nameOf(Estimator estimator);
 /// Every value of the parameter but `auto`.
 std::vector<std::string> estimatorNames();

@@ -7,7 +7,10 @@ namespace nephroid {
 namespace {
 
 /// Photons under a kernel of the first batch: fewer is noise, more is blur.
-constexpr float kGatherPhotons = 10.0F;
+constexpr float kCausticPhotons = 15.0F;
+/// The same of what a caustic lights in turn: smooth, so that more may be blurred. Of `pool` it was four fifths of the
+/// noise of what is seen through water, with as many as of caustics.
+constexpr float kIndirectPhotons = 30.0F;
 /// Share of the photons that a shrinking kernel keeps; 2/3 balances bias and variance (Knaus & Zwicker 2011).
 constexpr double kRadiusAlpha = 2.0 / 3.0;
 /// Kernels at most, and at least, over one that suits the map as a whole.
@@ -29,12 +32,12 @@ std::vector<GridPhoton> collect(const PhotonBatch& batch, Deposits kind) {
 }  // namespace
 
 template <class ChooseRadius>
-void GatheredPhotons::Map::take(const std::vector<GridPhoton>& photons, std::uint64_t batch,
+void GatheredPhotons::Map::take(const std::vector<GridPhoton>& photons, std::uint64_t batch, float expected,
                                 ChooseRadius&& choose_radius) {
   if (decided_by == kUndecided) {
-    const float radius = choose_radius(photons, kGatherPhotons);
+    const float radius = choose_radius(photons, expected);
     if (radius > 0.0F) {
-      radii = KernelRadii(photons, kGatherPhotons, kNarrowest * radius, kWidest * radius);
+      radii = KernelRadii(photons, expected, kNarrowest * radius, kWidest * radius);
       decided_by = batch;
     }
   }
@@ -42,8 +45,8 @@ void GatheredPhotons::Map::take(const std::vector<GridPhoton>& photons, std::uin
 }
 
 void GatheredPhotons::take(const PhotonBatch& batch, std::uint64_t batch_index) {
-  caustics_.take(collect(batch, &PhotonTally::caustic_deposits), batch_index, chooseGatherRadius);
-  indirect_.take(collect(batch, &PhotonTally::indirect_deposits), batch_index, chooseTypicalRadius);
+  caustics_.take(collect(batch, &PhotonTally::caustic_deposits), batch_index, kCausticPhotons, chooseGatherRadius);
+  indirect_.take(collect(batch, &PhotonTally::indirect_deposits), batch_index, kIndirectPhotons, chooseTypicalRadius);
 }
 
 std::vector<std::uint64_t> GatheredPhotons::decisiveBatches() const {

@@ -10,6 +10,7 @@
 
 #include "techniques/reference/photon_batch.h"
 #include "trace/kernel_map.h"
+#include "trace/kernel_radii.h"
 
 namespace nephroid {
 
@@ -41,7 +42,8 @@ class GatheredPhotons {
     std::uint64_t decided_by = kUndecided;  ///< batch
 
     template <class ChooseRadius>
-    void take(const std::vector<GridPhoton>& photons, std::uint64_t batch, ChooseRadius&& choose_radius);
+    void take(const std::vector<GridPhoton>& photons, std::uint64_t batch, float expected,
+              ChooseRadius&& choose_radius);
   };
 
   Map caustics_, indirect_;

@@ -10,9 +10,9 @@ namespace {
 constexpr int kRouletteStart = 8;
 
 /// Share of the photons that leave deposits after their first, each for all the others. What a caustic lights in turn
-/// is spread evenly and far dimmer: an eighth of the photons shows it with less noise than the caustic has, and their
+/// is spread evenly and far dimmer: a quarter of the photons shows it with less noise than the caustic has, and their
 /// rays cost a few per cent.
-constexpr float kIndirectShare = 1.0F / 8.0F;
+constexpr float kIndirectShare = 1.0F / 4.0F;
 
 }  // namespace
 
@@ -150,7 +150,8 @@ bool LightPath::scatter() {
 void LightPath::deposit(vec3 weighted, vec3 wo) {
   PhotonTally& tally = context_->tally;
   if (context_->keep_caustic_deposits)
-    tally.caustic_deposits.push_back({encounter_.point.position, state_.ray.dir, weighted});
+    tally.caustic_deposits.push_back(
+        {encounter_.point.position, state_.ray.dir, weighted, encounter_.point.normal_geometric});
   if (!trail_.carried()) return;
   tally.vcm_photons.push_back(trail_.photonAt(encounter_.point, wo, weighted));
   if (trail_.connects()) tally.vcm_ends.push_back(trail_.vertexAt(surface(), wo, weighted, EventClass::kDiffuse));
@@ -158,7 +159,7 @@ void LightPath::deposit(vec3 weighted, vec3 wo) {
 
 void LightPath::depositAgain(vec3 weighted) {
   context_->tally.indirect_deposits.push_back(
-      {encounter_.point.position, state_.ray.dir, weighted * (1.0F / kIndirectShare)});
+      {encounter_.point.position, state_.ray.dir, weighted / kIndirectShare, encounter_.point.normal_geometric});
 }
 
 bool LightPath::continueWith(const Bsdf& bsdf, vec3 specular_share, vec3 wo) {

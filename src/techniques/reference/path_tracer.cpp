@@ -20,13 +20,20 @@ constexpr float kLeastShare = 1.0F / 64.0F;
 /// What is transmitted then draws its numbers from another seed: if both ways took the same, their errors would add up.
 constexpr std::uint32_t kSplitSeedOffset = 0x73747261U;
 
+/// Ways on from the first diffuse surface that a path from the eye meets, if what is beyond is asked for. The light
+/// that comes straight from lamps has little noise there, so following one would spend much on finding the place again.
+constexpr std::uint32_t kDiffuseStrands = 4;
+/// They draw their numbers from one sequence, as neighbours in it, so that they are spread evenly.
+constexpr std::uint32_t kDiffuseSeedOffset = 0x64696666U;
+
 float powerHeuristic(float pdf, float other) {
   if (!std::isfinite(pdf)) return 1.0F;
   const float a = pdf * pdf, b = other * other;
   return a > 0.0F ? a / (a + b) : 0.0F;
 }
 
-/// A path as far as it has come. It begins as one strand; where clear glass both mirrors and transmits it becomes two.
+/// A path as far as it has come. It begins as one strand; where clear glass both mirrors and transmits it becomes two,
+/// and some where it first meets a diffuse surface.
 struct Strand {
   Sampler sampler;
   PathState state;
@@ -132,20 +139,20 @@ class EyePath {
   struct Gathered {
     vec3 radiance{0.0F};
     vec3 irradiance{0.0F};  ///< where it is seen directly
-    vec3 inner{0.0F};       ///< part of the radiance: from the half of each kernel about its photon
+    vec3 by_half{0.0F};     ///< radiance, if kernels had half of their areas
   };
   Gathered gatherFrom(const KernelMap& map, const Bsdf& bsdf) {
     const SurfacePoint& point = encounter_.point;
     Gathered found;
     const bool seen_directly = strand_.events.count() == 0;
-    map.visitKernels(point.position, point.normal_geometric, [&](const KernelPhoton& photon, float distance_squared) {
-      const vec3 wi = -photon.dir, incident = photon.flux * (photon.inverse_area * bsdf.shadingCosineRatio(wi));
-      const vec3 value = incident * bsdf.evaluate(EventClass::kDiffuse, wi, Transport::kRadiance).f;
-      found.radiance += value;
-      if (distance_squared <= 0.5F * photon.radius_squared) found.inner += value;
+    map.visitKernels(point.position, point.normal_geometric, [&](const KernelPhoton& photon, float squared_radius) {
+      const vec3 wi = -photon.dir, arriving = photon.flux * bsdf.shadingCosineRatio(wi);
+      const vec3 reflected = arriving * bsdf.evaluate(EventClass::kDiffuse, wi, Transport::kRadiance).f;
+      found.radiance += photon.weightAt(squared_radius) * reflected;
+      found.by_half += photon.halfWeightAt(squared_radius) * reflected;
       // As for light that is connected to the camera: on the side that the eye sees.
       if (seen_directly && dot(wi, point.normal_geometric) * dot(strand_.state.ray.dir, point.normal_geometric) < 0.0F)
-        found.irradiance += incident;
+        found.irradiance += photon.weightAt(squared_radius) * arriving;
     });
     return found;
   }
@@ -159,8 +166,8 @@ class EyePath {
     FilmPlane& plane = strand_.events.count() == 0 ? film_.caustic_bias : film_.specular_caustic_bias;
     if (!plane.active()) return;
     // Where light varies smoothly a kernel errs in proportion to its area at most (Knaus & Zwicker 2011), so by twice
-    // what the whole says more than its half.
-    const vec3 bias = 2.0F * strand_.state.hero.weight * strand_.throughput * (found.radiance - 2.0F * found.inner);
+    // what it says more than one of half its area.
+    const vec3 bias = 2.0F * strand_.state.hero.weight * strand_.throughput * (found.radiance - found.by_half);
     if (isFinite(bias)) plane.add(pixel_, bias);
   }
 
@@ -232,11 +239,31 @@ class EyePath {
     if (splits(bsdf)) return followBoth(bsdf);
     const float p_specular = bsdf.specularProbability();
     const bool specular = p_specular > 0.0F && strand_.sampler.next1D() < p_specular;
+    if (!specular && strand_.events.count() == 0 && needs_.beyondDiffuse())
+      return followDiffuseStrands(bsdf, 1.0F - p_specular);
     const EventClass c = specular ? EventClass::kSpecular : EventClass::kDiffuse;
-    const float p_class = specular ? p_specular : 1.0F - p_specular;
+    return sampleWay(bsdf, c, specular ? p_specular : 1.0F - p_specular, 1.0F);
+  }
+  /// @param share  of the path that the strand is
+  bool sampleWay(const Bsdf& bsdf, EventClass c, float p_class, float share) {
     const vec2 u = strand_.sampler.next2D();
-    const auto s = bsdf.sample(c, u, strand_.sampler.next1D(), Transport::kRadiance);
-    return s && follow(bsdf, c, *s, p_class, true);
+    auto s = bsdf.sample(c, u, strand_.sampler.next1D(), Transport::kRadiance);
+    if (!s) return false;
+    s->weight *= share;
+    strand_.split_share *= share;
+    return follow(bsdf, c, *s, p_class, true);
+  }
+
+  /// Where a diffuse surface is seen, the path becomes several strands, all of which wait. @return false
+  bool followDiffuseStrands(const Bsdf& bsdf, float p_class) {
+    const Strand before = strand_;
+    for (std::uint32_t i = 0; i < kDiffuseStrands; ++i) {
+      strand_ = before;
+      strand_.sampler = Sampler(world_.options.seed + kDiffuseSeedOffset, static_cast<std::uint32_t>(pixel_),
+                                sample_ * kDiffuseStrands + i);
+      if (sampleWay(bsdf, EventClass::kDiffuse, p_class, 1.0F / kDiffuseStrands)) waiting_.push_back(strand_);
+    }
+    return false;
   }
 
   /// Does clear glass send the path both ways? Where one of them brings next to nothing chance decides.
@@ -297,7 +324,7 @@ class EyePath {
       // Irradiance takes the cosine in the place of the BSDF, on the side that the eye sees.
       const float cos_theta = dot(s.dir, bsdf.normal());
       strand_.irradiance_throughput =
-          vec3(s.delta || s.pdf <= 0.0F ? 0.0F : std::max(cos_theta, 0.0F) / (s.pdf * p_class));
+          vec3(s.delta || s.pdf <= 0.0F ? 0.0F : strand_.split_share * std::max(cos_theta, 0.0F) / (s.pdf * p_class));
     }
     return strand_.events.count() < world_.options.max_bounces && mayContribute(strand_.events);
   }
@@ -374,7 +401,7 @@ class EyePath {
   std::uint32_t sample_;
   Sampler walk_sampler_;
   Strand strand_;                ///< on its way
-  std::vector<Strand> waiting_;  ///< where the path became two
+  std::vector<Strand> waiting_;  ///< where the path became several
   std::uint32_t split_count_ = 0;
   Encounter encounter_;
   float eye_ior_ = 1.0F;  ///< of the medium around the eye

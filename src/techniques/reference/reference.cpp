@@ -35,6 +35,14 @@ constexpr std::uint64_t kDefaultPhotons = 2'000'000;
 using Clock = std::chrono::steady_clock;
 double secondsSince(Clock::time_point start) { return std::chrono::duration<double>(Clock::now() - start).count(); }
 
+/// Are errors to be estimated of layers that hold little but caustics?
+bool estimatesCausticsAlone(const RenderSettings& settings) {
+  const std::vector<std::string> layers = layersWithError(settings.layers, settings.target_error);
+  return std::any_of(layers.begin(), layers.end(), [](const std::string& layer) {
+    return layer == "caustic" || layer == "irradiance" || layer == "irradiance_caustic";
+  });
+}
+
 /// One progressive render.
 class ReferenceRender {
  public:
@@ -50,9 +58,8 @@ class ReferenceRender {
         film_(settings.width, settings.height, needs_),
         steering_(film_, settings, needs_,
                   settings.params.getBool("adaptive") && settings.params.getString("estimator") != "vcm"),
-        choice_(chooseEstimators(settings.params.getString("estimator"),
-                                 !layersWithError(settings.layers, settings.target_error).empty(), world_, camera,
-                                 settings.width, settings.height, needs_)),
+        choice_(chooseEstimators(settings.params.getString("estimator"), !estimatesCausticsAlone(settings), world_,
+                                 camera, settings.width, settings.height, needs_)),
         path_needs_(choice_.caustic == Estimator::kVcm ? needs_.withoutCaustics() : needs_),
         path_tracer_(world_, path_needs_),
         passes_(settings.width, settings.height) {

@@ -110,6 +110,20 @@ TEST(EstimatorChoice, DoesNotDependOnThreadsOrSeed) {
   }
 }
 
+// A footprint's blur is in no standard error. Next to direct light it counts for less than the noise it saves.
+TEST(EstimatorChoice, BlursNoCausticWhoseOwnErrorIsEstimated) {
+  const SceneData scene = makeFrostedGlassUnderSky();
+  const auto choiceFor = [&](const std::vector<std::string>& layers, double target) {
+    RenderSettings settings = makeSettings(16, 1, 1 << 10, layers);
+    settings.target_error = target;
+    return test::renderReference(scene, scene.cameras[0], settings).image.metadata.at("estimator.caustic");
+  };
+  EXPECT_EQ(choiceFor({"beauty", "beauty_error"}, 0.0), "footprint");
+  EXPECT_EQ(choiceFor({"beauty"}, 0.1), "footprint");
+  EXPECT_EQ(choiceFor({"beauty", "caustic_error", "caustic"}, 0.0), "light");
+  EXPECT_EQ(choiceFor({"caustic"}, 0.1), "light");
+}
+
 // Paths for what is seen through glass, photons for the rest: each path is still counted once.
 TEST(EstimatorChoice, OfBothKindsMakesThePictureOfOneAlone) {
   const RenderResult mixed = render("auto", 256), pure = render("footprint", 256);
