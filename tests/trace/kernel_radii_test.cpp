@@ -124,8 +124,8 @@ TEST(KernelMap, DoesNotReachAroundCorners) {
   };
   EXPECT_EQ(count(kOff * up, out), 1);
   EXPECT_EQ(count(kOff * out, up), 1);
-  // Near the wall's foot the floor's plane is near; the wall's own is not.
-  EXPECT_EQ(count(vec3(0, 0, 0.9F * kOff) + 0.2F * kOff * up, up), 1);
+  // On a step of the floor, as high as what ended on the wall but off the wall's plane.
+  EXPECT_EQ(count(0.25F * kRadius * up + 0.45F * kRadius * out, up), 1);
 }
 
 /// A bright line on dim ground, as caustics are: mean over many batches of the profile that kernels make of it, over
