@@ -51,14 +51,13 @@ class KernelMap::GridBuilder {
     const vec3 reach = radius * glm::sqrt(glm::max(1.0F - along * along, vec3(0.0F))) + thickness * along;
     const float half_cell = 0.5F / grid_.inverse_cell;
     const float touch = thickness + half_cell * (along.x + along.y + along.z);
-    const vec3 first = grid_.cellAt(photon.position - reach), last = grid_.cellAt(photon.position + reach);
-    const vec3 to_origin = grid_.middleOf(vec3(0.0F)) - photon.position;
+    const glm::ivec3 first = grid_.cellAt(photon.position - reach), last = grid_.cellAt(photon.position + reach);
     const auto begin = static_cast<std::ptrdiff_t>(found.size());
-    vec3 cell;
+    glm::ivec3 cell;
     for (cell.z = first.z; cell.z <= last.z; ++cell.z)
       for (cell.y = first.y; cell.y <= last.y; ++cell.y)
         for (cell.x = first.x; cell.x <= last.x; ++cell.x) {
-          const vec3 to_middle = to_origin + 2.0F * half_cell * cell;
+          const vec3 to_middle = grid_.middleOf(cell) - photon.position;
           const vec3 outside = glm::max(glm::abs(to_middle) - half_cell, vec3(0.0F));
           if (dot(outside, outside) > radius * radius || std::abs(dot(photon.normal, to_middle)) > touch) continue;
           const std::uint32_t bucket = grid_.bucketOf(cell);

@@ -59,9 +59,9 @@ class KernelMap {
     std::vector<std::uint32_t> begin;    ///< bucket count + 1 offsets
     std::vector<std::uint32_t> entries;  ///< into photons_, by bucket
 
-    vec3 cellAt(vec3 position) const;
-    vec3 middleOf(vec3 cell) const;
-    std::uint32_t bucketOf(vec3 cell) const;
+    glm::ivec3 cellAt(vec3 position) const;
+    vec3 middleOf(glm::ivec3 cell) const;
+    std::uint32_t bucketOf(glm::ivec3 cell) const { return hashOfCell(cell.x, cell.y, cell.z) & mask; }
   };
   class GridBuilder;
 
@@ -80,11 +80,12 @@ class KernelMap {
 /// two layers of cells.
 inline constexpr float kOriginInCell = 0.37F;
 
-inline vec3 KernelMap::Grid::cellAt(vec3 position) const { return glm::floor(position * inverse_cell + kOriginInCell); }
-inline vec3 KernelMap::Grid::middleOf(vec3 cell) const { return (cell + (0.5F - kOriginInCell)) / inverse_cell; }
-
-inline std::uint32_t KernelMap::Grid::bucketOf(vec3 cell) const {
-  return hashOfCell(static_cast<int>(cell.x), static_cast<int>(cell.y), static_cast<int>(cell.z)) & mask;
+inline glm::ivec3 KernelMap::Grid::cellAt(vec3 position) const {
+  constexpr float kMost = 1e9F;  // far beyond where floats still tell cells apart
+  return glm::floor(glm::clamp(position * inverse_cell + kOriginInCell, -kMost, kMost));
+}
+inline vec3 KernelMap::Grid::middleOf(glm::ivec3 cell) const {
+  return (vec3(cell) + (0.5F - kOriginInCell)) / inverse_cell;
 }
 
 }  // namespace nephroid
