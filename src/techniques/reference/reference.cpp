@@ -35,12 +35,11 @@ constexpr std::uint64_t kDefaultPhotons = 2'000'000;
 using Clock = std::chrono::steady_clock;
 double secondsSince(Clock::time_point start) { return std::chrono::duration<double>(Clock::now() - start).count(); }
 
-/// Are errors to be estimated of layers that hold little but caustics?
+/// Are errors to be estimated of caustics alone, without the direct light beside which their blur counts for little?
 bool estimatesCausticsAlone(const RenderSettings& settings) {
   const std::vector<std::string> layers = layersWithError(settings.layers, settings.target_error);
-  return std::any_of(layers.begin(), layers.end(), [](const std::string& layer) {
-    return layer == "caustic" || layer == "irradiance" || layer == "irradiance_caustic";
-  });
+  return std::any_of(layers.begin(), layers.end(),
+                     [](const std::string& layer) { return layer == "caustic" || layer == "irradiance_caustic"; });
 }
 
 /// One progressive render.

@@ -120,6 +120,7 @@ TEST(EstimatorChoice, BlursNoCausticWhoseOwnErrorIsEstimated) {
   };
   EXPECT_EQ(choiceFor({"beauty", "beauty_error"}, 0.0), "footprint");
   EXPECT_EQ(choiceFor({"beauty"}, 0.1), "footprint");
+  EXPECT_EQ(choiceFor({"caustic", "irradiance", "irradiance_error"}, 0.0), "footprint");
   EXPECT_EQ(choiceFor({"beauty", "caustic_error", "caustic"}, 0.0), "light");
   EXPECT_EQ(choiceFor({"caustic"}, 0.1), "light");
 }
