@@ -43,6 +43,8 @@ class PathClass {
   }
 
   int count() const { return count_; }
+  int diffuseCount() const { return diffuse_count_; }
+  bool firstIsSpecular() const { return count_ > 0 && first_specular_; }
   bool firstIsDiffuse() const { return count_ > 0 && !first_specular_; }
   /// With more S alone it becomes L S⁺ D E, or is that already.
   bool mayBecomeCaustic() const { return firstIsDiffuse() && later_all_specular_; }

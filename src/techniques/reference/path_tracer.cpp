@@ -7,8 +7,8 @@
 namespace nephroid {
 namespace {
 
-/// Events before Russian roulette begins: glass objects need a handful to be seen through.
-constexpr int kRouletteStart = 6;
+/// Events before Russian roulette by what is left begins: glass objects need a handful to be seen through.
+constexpr int kRouletteStart = 4;
 
 /// Walks on the specular manifold draw their numbers from a seed of their own: how many they take is left to chance.
 constexpr std::uint32_t kWalkSeedOffset = 0x6D6E6565U;
@@ -50,14 +50,15 @@ struct Strand {
 class EyePath {
  public:
   EyePath(const ReferenceWorld& world, const LayerNeeds& needs, const GatheredPhotons* photons,
-          const PhotonPaths& gathered, const PhotonPaths& left, const Manifold* manifold, Film& film,
-          PathCounters& counters, std::size_t pixel, std::uint32_t sample)
+          const PhotonPaths& gathered, const PhotonPaths& left, const Manifold* manifold,
+          const Continuation& continuation, Film& film, PathCounters& counters, std::size_t pixel, std::uint32_t sample)
       : world_(world),
         needs_(needs),
         photons_(photons),
         gathered_(gathered),
         left_(left),
         manifold_(manifold),
+        continuation_(continuation),
         film_(film),
         counters_(counters),
         pixel_(pixel),
@@ -93,7 +94,7 @@ class EyePath {
   bool advance() {
     const Ray whole = strand_.state.ray;
     world_.walker.advance(strand_.state, strand_.sampler, encounter_, strand_.events.count() == 0);
-    counters_.rays += encounter_.rays;
+    countRays(encounter_.rays);
     if (encounter_.overflow) return false;
     world_.lights.visitSpheres(strand_.vertex, whole, encounter_.distance,
                                [&](const LightSet::Met& met) { addMet(met); });
@@ -106,6 +107,11 @@ class EyePath {
     const LightSet::Met met = world_.lights.metSurface(strand_.vertex, encounter_.point, strand_.state.ray.dir);
     if (maxComponent(met.radiance) > 0.0F) addMet(met);
     return maxComponent(glm::abs(strand_.throughput)) > 0.0F;
+  }
+
+  void countRays(std::uint64_t rays) {
+    counters_.rays += rays;
+    if (counters_.parts) counters_.parts->rays[PathPart::of(strand_.events)] += static_cast<double>(rays);
   }
 
   void addMet(const LightSet::Met& met) {
@@ -132,7 +138,9 @@ class EyePath {
   void gather(const Bsdf& bsdf) {
     if (strand_.events.count() == 0 ? gathered_.caustic : gathered_.specular_caustic && strand_.events.isEyeSpecular())
       gatherCaustic(bsdf);
-    if (gathered_.specular_indirect && strand_.events.isEyeSpecular()) gatherIndirect(bsdf);
+    if (strand_.events.count() == 0 ? gathered_.indirect
+                                    : gathered_.specular_indirect && strand_.events.isEyeSpecular())
+      gatherIndirect(bsdf);
   }
 
   /// What kernels about a point say of it.
@@ -176,7 +184,8 @@ class EyePath {
     if (map.empty()) return;
     const PathClass path =
         strand_.events.with(EventClass::kDiffuse).with(EventClass::kDiffuse).with(EventClass::kSpecular);  // for one
-    record(path, strand_.throughput * gatherFrom(map, bsdf).radiance, vec3(0.0F));
+    const Gathered found = gatherFrom(map, bsdf);
+    record(path, strand_.throughput * found.radiance, found.irradiance);
   }
 
   bool wantsWalk() const {
@@ -218,7 +227,9 @@ class EyePath {
     const float cos_theta = std::abs(dot(light->dir, bsdf.normal()));
     if (maxComponent(value.f) <= 0.0F) return;
     const Ray shadow{offsetOrigin(encounter_.point, light->dir), light->dir, light->distance * kShadowEnd};
-    const vec3 visible = world_.walker.visibility(shadow, mediumTowards(light->dir), counters_.rays);
+    std::uint64_t rays = 0;
+    const vec3 visible = world_.walker.visibility(shadow, mediumTowards(light->dir), rays);
+    countRays(rays);
     if (maxComponent(visible) <= 0.0F) return;
     const float p_class = c == EventClass::kSpecular ? bsdf.specularProbability() : 1.0F - bsdf.specularProbability();
     const float weight = light->delta ? 1.0F : powerHeuristic(light->pdf, p_class * value.pdf);
@@ -246,6 +257,11 @@ class EyePath {
   }
   /// @param share  of the path that the strand is
   bool sampleWay(const Bsdf& bsdf, EventClass c, float p_class, float share) {
+    if (c == EventClass::kDiffuse) {
+      const float q = continuation_.into(strand_.events.with(c));
+      if (q < 1.0F && strand_.sampler.next1D() >= q) return false;
+      share /= q;
+    }
     const vec2 u = strand_.sampler.next2D();
     auto s = bsdf.sample(c, u, strand_.sampler.next1D(), Transport::kRadiance);
     if (!s) return false;
@@ -364,6 +380,7 @@ class EyePath {
       ++counters_.not_finite;
       return;
     }
+    if (counters_.parts) counters_.parts->squares[PathPart::of(strand_.events)] += dot(radiance, radiance);
     const auto addTo = [&](FilmPlane& plane, vec3 value) {
       if (plane.active()) plane.add(pixel_, value);
     };
@@ -395,6 +412,7 @@ class EyePath {
   const PhotonPaths& gathered_;
   const PhotonPaths& left_;  ///< gathered here, or made elsewhere
   const Manifold* manifold_;
+  const Continuation& continuation_;
   Film& film_;
   PathCounters& counters_;
   std::size_t pixel_;
@@ -411,7 +429,7 @@ class EyePath {
 
 void PathTracer::tracePath(int x, int y, std::uint32_t sample, Film& film, PathCounters& counters) const {
   const auto pixel = static_cast<std::size_t>(y) * film.width + x;
-  EyePath path(world_, needs_, photons_, gathered_, left_, manifold_, film, counters, pixel, sample);
+  EyePath path(world_, needs_, photons_, gathered_, left_, manifold_, continuation_, film, counters, pixel, sample);
   path.trace(vec2(static_cast<float>(x), static_cast<float>(y)));
 }
 

@@ -14,6 +14,7 @@
 
 #include <cstdint>
 
+#include "techniques/reference/continuation.h"
 #include "techniques/reference/film.h"
 #include "techniques/reference/gathered_photons.h"
 #include "techniques/reference/manifold/manifold.h"
@@ -25,6 +26,7 @@ namespace nephroid {
 struct PathCounters {
   std::uint64_t rays = 0;
   std::uint64_t not_finite = 0;
+  PartTally* parts = nullptr;  ///< filled if there
 };
 
 class PathTracer {
@@ -33,13 +35,15 @@ class PathTracer {
   /// From now on these paths are not looked for by chance.
   void leaveToPhotons(const PhotonPaths& paths) { left_ = paths; }
   /// From now on these photons are gathered; they must outlive the paths and may be none.
-  /// @param paths  which of L S⁺ D E, L S⁺ D S⁺ E and L S … D … D S⁺ E
+  /// @param paths  which of them
   void gatherFrom(const GatheredPhotons* photons, const PhotonPaths& paths) {
     photons_ = photons;
     gathered_ = paths;
   }
   /// From now on caustics over one or two interfaces, seen directly or not, are found by this, which must outlive it.
   void walkFrom(const Manifold* manifold) { manifold_ = manifold; }
+  /// From now on paths go on by this.
+  void continueBy(const Continuation& continuation) { continuation_ = continuation; }
   /// One path through pixel (x, y), added to the film. Safe from any thread as long as no two share a pixel.
   void tracePath(int x, int y, std::uint32_t sample, Film& film, PathCounters& counters) const;
 
@@ -49,6 +53,7 @@ class PathTracer {
   const GatheredPhotons* photons_ = nullptr;
   PhotonPaths left_, gathered_;
   const Manifold* manifold_ = nullptr;
+  Continuation continuation_;
 };
 
 }  // namespace nephroid

@@ -17,6 +17,7 @@ class PictureTiles {
 
   int width() const { return width_; }
   int height() const { return height_; }
+  std::size_t pixels() const { return static_cast<std::size_t>(width_) * static_cast<std::size_t>(height_); }
   std::size_t count() const {
     return static_cast<std::size_t>(columns_) * static_cast<std::size_t>((height_ + kSide - 1) / kSide);
   }
