@@ -120,6 +120,11 @@ void ErrorEstimate::closeLightBatch(std::uint64_t passes) {
   lights_ = {lights_.batches + 1, passes};
 }
 
+void ErrorEstimate::closeFullLightBatch(std::uint64_t passes) {
+  if (passes - lights_.passes >= std::max<std::uint64_t>(1, std::bit_floor(lights_.passes) / kBatchShare))
+    closeLightBatch(passes);
+}
+
 std::uint64_t ErrorEstimate::eyeBatches() const {
   std::uint64_t fewest = eye_.front().batches;
   for (const Direction& tile : eye_) fewest = std::min(fewest, tile.batches);

@@ -75,6 +75,8 @@ class ErrorEstimate {
   void closeFullEyeBatches(std::span<const std::uint64_t> passes, std::uint64_t shortest);
   /// All batches of photons that the film holds are in closed batches from here on.
   void closeLightBatch(std::uint64_t passes);
+  /// The same, but only in proportion to all that went before, as closeFullEyeBatches().
+  void closeFullLightBatch(std::uint64_t passes);
   /// Of the direction and tile that has fewest, among the directions that were closed at all.
   std::uint64_t batches() const;
   /// From the eye, of the tile that has fewest.

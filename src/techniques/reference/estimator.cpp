@@ -53,6 +53,8 @@ EstimatorChoice chooseEstimators(std::string_view name, bool may_blur, Reference
   EstimatorChoice choice = choiceOfOne(may_blur ? Estimator::kFootprint : Estimator::kLight);
   choice.figures = measureEstimators(world, camera, width, height, needs);
   const auto isWon = [](const std::optional<EstimatorFigures>& f) { return f && f->pathsAreBetter(); };
+  // Smooth, and beside all other light.
+  if (may_blur && needs.beauty) choice.indirect = Estimator::kPhotonMap;
   if (isWon(choice.figures.caustic)) choice.caustic = Estimator::kPath;
   if (isWon(choice.figures.specular_caustic)) choice.specular_caustic = Estimator::kPath;
   return choice;
@@ -81,6 +83,7 @@ void describeEstimators(const EstimatorChoice& choice, const LayerNeeds& needs,
                         std::map<std::string, std::string>& metadata) {
   if (needs.caustic || needs.irradiance_caustic) metadata["estimator.caustic"] = nameOf(choice.caustic);
   if (needs.throughSpecular()) metadata["estimator.specular_caustic"] = nameOf(choice.specular_caustic);
+  if (needs.indirect) metadata["estimator.indirect"] = nameOf(choice.indirect);
   const PilotFigures& figures = choice.figures;
   if (figures.caustic) metadata["estimator.caustic.measured"] = formatFigures(*figures.caustic);
   if (figures.specular_caustic)

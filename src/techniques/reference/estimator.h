@@ -36,7 +36,7 @@ ParamSpec makeEstimatorParam();
 struct EstimatorChoice {
   Estimator caustic;           ///< L S⁺ D E
   Estimator specular_caustic;  ///< L S⁺ D S⁺ E, and L S … D … D S⁺ E, which it lights in turn
-  Estimator indirect;          ///< L S … D … D E: kLight or kPath
+  Estimator indirect;          ///< L S … D … D E: kLight, kPhotonMap or kPath
   PilotFigures figures;        ///< by which it was chosen, if it was measured
 };
 

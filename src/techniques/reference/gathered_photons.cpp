@@ -13,6 +13,10 @@ constexpr float kCausticPhotons = 15.0F;
 constexpr float kIndirectPhotons = 30.0F;
 /// Share of the photons that a shrinking kernel keeps; 2/3 balances bias and variance (Knaus & Zwicker 2011).
 constexpr double kRadiusAlpha = 2.0 / 3.0;
+/// Batches that count before the first as far as shrinking goes. Noise of a single batch is far above blur: of `pool`
+/// the squares are 0.05 and 0.00015. With kernels as large as at first they would be equal after some hundred batches,
+/// and narrower kernels are noisier.
+constexpr double kWholeBatches = 64.0;
 /// Kernels at most, and at least, over one that suits the map as a whole.
 constexpr float kWidest = 3.0F, kNarrowest = 0.25F;
 
@@ -32,36 +36,51 @@ std::vector<GridPhoton> collect(const PhotonBatch& batch, Deposits kind) {
 }  // namespace
 
 template <class ChooseRadius>
-void GatheredPhotons::Map::take(const std::vector<GridPhoton>& photons, std::uint64_t batch, float expected,
-                                ChooseRadius&& choose_radius) {
-  if (decided_by == kUndecided) {
-    const float radius = choose_radius(photons, expected);
-    if (radius > 0.0F) {
-      radii = KernelRadii(photons, expected, kNarrowest * radius, kWidest * radius);
-      decided_by = batch;
-    }
-  }
-  kernels = decided_by != kUndecided ? KernelMap(photons, radii, std::sqrt(shrinkAreas(batch))) : KernelMap();
+void GatheredPhotons::Map::decide(const std::vector<GridPhoton>& photons, std::uint64_t batch, float expected,
+                                  ChooseRadius&& choose_radius) {
+  if (decided_by != kUndecided && decided_by != batch) return;
+  const float radius = choose_radius(photons, expected);
+  if (radius <= 0.0F) return;
+  radii = KernelRadii(photons, expected, kNarrowest * radius, kWidest * radius);
+  decided_by = batch;
+}
+
+void GatheredPhotons::Map::spread(const std::vector<GridPhoton>& photons, float scale) {
+  kernels = decided_by != kUndecided ? KernelMap(photons, radii, scale) : KernelMap();
 }
 
 void GatheredPhotons::take(const PhotonBatch& batch, std::uint64_t batch_index) {
-  caustics_.take(collect(batch, &PhotonTally::caustic_deposits), batch_index, kCausticPhotons, chooseGatherRadius);
-  indirect_.take(collect(batch, &PhotonTally::indirect_deposits), batch_index, kIndirectPhotons, chooseTypicalRadius);
+  latest_ = batch_index;
+  ++taken_;
+  retake(batch, batch_index);
 }
 
-std::vector<std::uint64_t> GatheredPhotons::decisiveBatches() const {
+void GatheredPhotons::retake(const PhotonBatch& batch, std::uint64_t batch_index) {
+  const std::vector<GridPhoton> caustic = collect(batch, &PhotonTally::caustic_deposits),
+                                indirect = collect(batch, &PhotonTally::indirect_deposits);
+  caustics_.decide(caustic, batch_index, kCausticPhotons, chooseGatherRadius);
+  indirect_.decide(indirect, batch_index, kIndirectPhotons, chooseTypicalRadius);
+  if (batch_index != latest_) return;
+  const float scale = std::sqrt(shrinkAreas(taken_ - 1));
+  caustics_.spread(caustic, scale);
+  indirect_.spread(indirect, scale);
+}
+
+std::vector<std::uint64_t> GatheredPhotons::batchesToRetake() const {
   std::vector<std::uint64_t> batches;
   for (const Map* map : {&caustics_, &indirect_})
     if (map->decided_by != kUndecided) batches.push_back(map->decided_by);
+  if (taken_ > 0) batches.push_back(latest_);
   std::sort(batches.begin(), batches.end());
   batches.erase(std::unique(batches.begin(), batches.end()), batches.end());
   return batches;
 }
 
 float shrinkAreas(std::uint64_t batch) {
-  const auto k = static_cast<double>(batch);
-  return static_cast<float>(
-      std::exp(std::lgamma(k + 1.0 + kRadiusAlpha) - std::lgamma(1.0 + kRadiusAlpha) - std::lgamma(k + 2.0)));
+  // Σ log((j + α)/(j + 1)) over j from kWholeBatches + 1 to kWholeBatches + batch.
+  const double first = kWholeBatches + 1.0, k = static_cast<double>(batch);
+  return static_cast<float>(std::exp(std::lgamma(first + k + kRadiusAlpha) - std::lgamma(first + kRadiusAlpha) -
+                                     std::lgamma(first + k + 1.0) + std::lgamma(first + 1.0)));
 }
 
 float chooseTypicalRadius(const std::vector<GridPhoton>& photons, float expected) {

@@ -16,22 +16,24 @@ namespace nephroid {
 
 class GatheredPhotons {
  public:
-  /// Takes the place of the batch before, under smaller kernels. The first that has photons decides how wide kernels
-  /// are where. @param batch_index  from 0
+  /// Takes the place of the batch taken before, under smaller kernels. The first that has photons decides how wide
+  /// kernels are where. @param batch_index  from 0; not all batches need be taken
   void take(const PhotonBatch& batch, std::uint64_t batch_index);
+  /// Is this the batch taken last?
+  bool holds(std::uint64_t batch_index) const { return taken_ > 0 && latest_ == batch_index; }
 
   /// Where photons first met a diffuse surface. Flux in W, as of all of these.
   const KernelMap& caustics() const { return caustics_.kernels; }
   /// Where they did so again.
   const KernelMap& indirect() const { return indirect_.kernels; }
 
-  /// Batches that decided, in order. Whoever takes them, and then the latest, has what this has.
-  std::vector<std::uint64_t> decisiveBatches() const;
-  /// Only which batches those are.
+  /// After a checkpoint was read, which knows batches by their numbers alone: those to give to retake(), in order.
+  std::vector<std::uint64_t> batchesToRetake() const;
+  void retake(const PhotonBatch& batch, std::uint64_t batch_index);
   template <class State>
   void visitState(State& state) {
-    state.value(caustics_.decided_by);
-    state.value(indirect_.decided_by);
+    for (std::uint64_t* number : {&caustics_.decided_by, &indirect_.decided_by, &latest_, &taken_})
+      state.value(*number);
   }
 
  private:
@@ -42,15 +44,17 @@ class GatheredPhotons {
     std::uint64_t decided_by = kUndecided;  ///< batch
 
     template <class ChooseRadius>
-    void take(const std::vector<GridPhoton>& photons, std::uint64_t batch, float expected,
-              ChooseRadius&& choose_radius);
+    void decide(const std::vector<GridPhoton>& photons, std::uint64_t batch, float expected,
+                ChooseRadius&& choose_radius);
+    void spread(const std::vector<GridPhoton>& photons, float scale);
   };
 
   Map caustics_, indirect_;
+  std::uint64_t latest_ = 0, taken_ = 0;  ///< batch, and how many were taken
 };
 
 /// Areas of kernels of a batch over those of the first: the product of (j + α)/(j + 1) over batches j from 1 to this
-/// one (Knaus & Zwicker 2011, eq. 15). @param batch  from 0
+/// one (Knaus & Zwicker 2011, eq. 15). @param batch  of those that are gathered, from 0
 float shrinkAreas(std::uint64_t batch);
 
 /// A first radius under which half of the photons have about `expected` others, however unevenly they lie: a few that

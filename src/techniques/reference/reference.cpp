@@ -16,6 +16,7 @@
 #include "scene/fingerprint.h"
 #include "techniques/layers.h"
 #include "techniques/reference/checkpoint.h"
+#include "techniques/reference/continuation_pilot.h"
 #include "techniques/reference/estimator.h"
 #include "techniques/reference/geometry_layers.h"
 #include "techniques/reference/guide_pilot.h"
@@ -67,23 +68,28 @@ class ReferenceRender {
     PhotonPaths from_photons = photonPathsOf(choice_);
     const bool gather_direct =
         choice_.caustic == Estimator::kPhotonMap && (needs_.caustic || needs_.irradiance_caustic);
-    const bool photons_reach_eye = gather_direct || (from_photons.specular_caustic && needs_.throughSpecular());
+    const bool gather_indirect = choice_.indirect == Estimator::kPhotonMap && (needs_.indirect || needs_.irradiance);
+    const bool photons_reach_eye =
+        gather_direct || gather_indirect || (from_photons.specular_caustic && needs_.throughSpecular());
     const bool gather = photons_reach_eye && !connects_and_merges;
     const PhotonPaths connect{
         .caustic = from_photons.caustic && !gather_direct && (needs_.caustic || needs_.anyIrradiance()),
-        .indirect = from_photons.indirect && (needs_.indirect || needs_.irradiance)};
+        .indirect = from_photons.indirect && !gather_indirect && (needs_.indirect || needs_.irradiance)};
     if (connect.caustic || connect.indirect || photons_reach_eye)
       light_tracer_ = std::make_unique<LightTracer>(world_, connect);
     if (light_tracer_ && light_tracer_->emitters().empty()) light_tracer_.reset();
     gather_ = gather && light_tracer_;
     if (gather && !gather_) from_photons.specular_caustic = from_photons.specular_indirect = false;
     path_tracer_.leaveToPhotons(from_photons);
+    PhotonPaths gathered;
     if (gather_) {
-      light_tracer_->keepDeposits(needs_.specular);
+      gathered = {.caustic = gather_direct,
+                  .indirect = gather_indirect,
+                  .specular_caustic = needs_.throughSpecular(),
+                  .specular_indirect = needs_.specular};
+      light_tracer_->keepDeposits(gathered.indirect || gathered.specular_indirect);
       steering_.watchGathering();
-      path_tracer_.gatherFrom(&gathered_, {.caustic = gather_direct,
-                                           .specular_caustic = needs_.throughSpecular(),
-                                           .specular_indirect = needs_.specular});
+      path_tracer_.gatherFrom(&gathered_, gathered);
     }
     if (choice_.caustic == Estimator::kManifold && light_tracer_) walkToLights();
     if (connects_and_merges && light_tracer_) vcm_ = std::make_unique<Vcm>(world_, *light_tracer_, needs_);
@@ -91,6 +97,10 @@ class ReferenceRender {
     if (settings.target_error > 0.0 && steering_.empty())
       throw UsageError("a target error needs a layer that converges, such as beauty; those asked for are exact");
     chooseBudgets();
+    if (paysToMeasureContinuation())
+      continuation_ = measureContinuation(world_, camera, settings.width, settings.height, path_needs_,
+                                          {from_photons, connect, gathered});
+    path_tracer_.continueBy(continuation_);
     addStage("build", secondsSince(start_));
   }
 
@@ -127,6 +137,13 @@ class ReferenceRender {
     if (const int bands = settings.params.getInt("bands"); bands > 0) options.spectral.bands = makeBands(bands);
     options.seed = foldSeed(settings.seed);
     return options;
+  }
+
+  /// A pilot of paths costs as much as one of estimators, which smaller renders would feel.
+  bool paysToMeasureContinuation() const {
+    constexpr std::uint64_t kFewestPaths = 1'000'000;
+    const std::uint64_t pixels = passes_.tiles().pixels();
+    return !vcm_ && needs_.beauty && samples_budget_ >= kFewestPaths / pixels;
   }
 
   void walkToLights() {
@@ -220,6 +237,7 @@ class ReferenceRender {
     if (gather_) {
       // Paths that gather the same photons over and over err alike.
       const std::uint64_t rounds = samples_done_ - samples_at_photons_;
+      if (rounds == 0) return steering_.ungatheredPhotonsPay(path_rays_, light_rays_);
       if (steering_.mustGatherOn(rounds)) return false;
       if (!steering_.mayGatherOn(rounds, samples_done_)) return true;
     }
@@ -234,6 +252,8 @@ class ReferenceRender {
   /// A round of paths. If it is stopped, the tiles that are done are remembered, and the next call does the others.
   void tracePaths() {
     if (!passes_.planned()) steering_.planRound(passes_);
+    if (gather_ && batches_done_ > 0 && !gathered_.holds(batches_done_ - 1))
+      gathered_.take(*photon_batch_, batches_done_ - 1);
     const bool something = samples_done_ > 0;
     std::atomic<std::uint64_t> rays{0}, not_finite{0};
     passes_.run(
@@ -264,7 +284,6 @@ class ReferenceRender {
       not_finite_ += chunk.tally.not_finite;
       photons_done_ += static_cast<std::uint64_t>(chunk.tally.ledger.emitted_count);
     }
-    if (gather_) gathered_.take(*photon_batch_, batches_done_);
     ++batches_done_;
     steering_.takePhotons(passes_, batches_done_, gather_);
     samples_at_photons_ = samples_done_;
@@ -343,20 +362,17 @@ class ReferenceRender {
 
   /// Those that the next step depends on.
   void retraceBatches() {
-    if (gather_) {
-      const std::vector<std::uint64_t> decisive = gathered_.decisiveBatches();
-      gathered_ = {};
-      for (const std::uint64_t batch : decisive) {
-        // Not stopped: what is saved at the end must know of them.
-        photon_batch_->trace(batch, [] { return false; });
-        gathered_.take(*photon_batch_, batch);
-      }
-    }
     const std::uint64_t last = batches_done_ - 1;
+    if (gather_) {
+      // Not stopped: what is saved at the end must know of them.
+      for (const std::uint64_t batch : gathered_.batchesToRetake()) {
+        photon_batch_->trace(batch, [] { return false; });
+        gathered_.retake(*photon_batch_, batch);
+      }
+      if (gathered_.holds(last)) return;
+    }
     if (vcm_) vcm_->prepareBatch(last);
-    if (!photon_batch_->trace(last, [&] { return stopped(); })) return;
-    if (vcm_) vcm_->takeBatch(last, *photon_batch_);
-    if (gather_) gathered_.take(*photon_batch_, last);
+    if (photon_batch_->trace(last, [&] { return stopped(); }) && vcm_) vcm_->takeBatch(last, *photon_batch_);
   }
 
   void shareLedgers() {
@@ -388,7 +404,7 @@ class ReferenceRender {
 
   /// From sums to pictures.
   void develop(RenderResult& result) {
-    steering_.takeRest(passes_);
+    steering_.takeRest(passes_, batches_done_);
     for (const std::string& name : settings_.layers) {
       const auto geometry =
           std::find_if(geometry_.begin(), geometry_.end(), [&](const Layer& l) { return l.name == name; });
@@ -419,8 +435,13 @@ class ReferenceRender {
     metadata["seed"] = std::to_string(settings_.seed);
     metadata["samples"] = std::to_string(passes_.meanPasses());
     metadata["photons"] = std::to_string(photons_done_);
-    for (const std::string& layer : layersWithError(settings_.layers, settings_.target_error))
-      metadata["estimated_relmse." + layer] = fmt::format("{:.4g}", steering_.errors().relMse(layer).total());
+    for (const std::string& layer : layersWithError(settings_.layers, settings_.target_error)) {
+      const RelativeError error = steering_.errors().relMse(layer);
+      const std::string key = "estimated_relmse." + layer;
+      metadata[key] = fmt::format("{:.4g}", error.total());
+      metadata[key + ".from_eye"] = fmt::format("{:.4g}", error.from_eye);
+      metadata[key + ".from_lights"] = fmt::format("{:.4g}", error.from_lights);
+    }
     for (const ParamSpec& spec : settings_.params.specs())
       metadata["set." + spec.name] = settings_.params.toText(spec.name);
     describeEstimators(choice_, needs_, metadata);
@@ -435,6 +456,10 @@ class ReferenceRender {
       result.notes.push_back(
           fmt::format("caustics of '{}': each photon spread over its footprint, overlap {:g} N^(1/3)",
                       light_tracer_->emitters()[e]->name(), footprints_.overlaps[e]));
+    if (const float into = continuation_.probability[1]; into < 1.0F)
+      result.notes.push_back(
+          fmt::format("{:.0f} % of the paths go on from surfaces that they met by mirrors or glass: more bring little",
+                      100.0F * into));
     for (const GuidedLight& light : guided_)
       result.notes.push_back(fmt::format("photons of '{}' guided: {:.0f} % of them reach the picture, {:.0f} % if even",
                                          light.name, 100.0 * light.seen_guided, 100.0 * light.seen_even));
@@ -479,6 +504,7 @@ class ReferenceRender {
   Steering steering_;
   EstimatorChoice choice_;
   LayerNeeds path_needs_;  ///< of `path_tracer_`
+  Continuation continuation_;
   PathTracer path_tracer_;
   std::unique_ptr<LightTracer> light_tracer_;
   std::unique_ptr<Manifold> manifold_;

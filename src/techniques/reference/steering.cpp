@@ -52,14 +52,16 @@ void Steering::takePaths(const EyePasses& passes, bool gather) {
 
 void Steering::takePhotons(const EyePasses& passes, std::uint64_t batches, bool gathered) {
   if (errors_.empty()) return;
-  errors_.closeLightBatch(batches);
-  if (gathered) errors_.closeEyeBatches(passes.done());
+  errors_.closeFullLightBatch(batches);
+  if (gathered) errors_.closeFullEyeBatches(passes.done(), batch_passes_);
   if (probe_) probe_->closeBatch();
   estimate();
 }
 
-void Steering::takeRest(const EyePasses& passes) {
-  if (!errors_.empty()) errors_.closeEyeBatches(passes.done());
+void Steering::takeRest(const EyePasses& passes, std::uint64_t batches) {
+  if (errors_.empty()) return;
+  errors_.closeEyeBatches(passes.done());
+  errors_.closeLightBatch(batches);
 }
 
 void Steering::estimate() {
@@ -75,6 +77,11 @@ bool Steering::reachesTarget() const {
 
 bool Steering::mayGatherOn(std::uint64_t rounds_of_batch, std::uint64_t rounds) const {
   return isKnown() && rounds_of_batch < std::max(batch_passes_, rounds / kBatchShare);
+}
+
+bool Steering::ungatheredPhotonsPay(std::uint64_t path_rays, std::uint64_t light_rays) const {
+  return isKnown() && error_.error.from_lights * static_cast<double>(path_rays) >=
+                          error_.error.from_eye * static_cast<double>(light_rays);
 }
 
 bool Steering::photonsPay(std::uint64_t path_rays, std::uint64_t light_rays) const {

@@ -46,7 +46,7 @@ class Steering {
   /// After a batch of photons. @param gathered  paths gathered the one before: all that did are one batch
   void takePhotons(const EyePasses& passes, std::uint64_t batches, bool gathered);
   /// At the end: nothing is left out of the estimate.
-  void takeRest(const EyePasses& passes);
+  void takeRest(const EyePasses& passes, std::uint64_t batches);
   /// From what is in closed batches, which a checkpoint may have brought.
   void estimate();
 
@@ -58,8 +58,10 @@ class Steering {
   /// May one more round of paths gather the photons of the latest batch? Some must, and each time about an eighth more,
   /// so that there are batches enough to know the error by.
   bool mayGatherOn(std::uint64_t rounds_of_batch, std::uint64_t rounds) const;
+  /// Do photons lessen the error more than paths that gather the latest batch would, even if no path gathers it?
+  bool ungatheredPhotonsPay(std::uint64_t path_rays, std::uint64_t light_rays) const;
   /// Have so few rounds gathered them that more are due, whatever pays?
-  bool mustGatherOn(std::uint64_t rounds_of_batch) const { return rounds_of_batch < batch_passes_; }
+  bool mustGatherOn(std::uint64_t rounds_of_batch) const { return rounds_of_batch < (isKnown() ? 1 : batch_passes_); }
   /// Do photons lessen the error more by another ray? A variance falls by its share per pass, and a pass costs rays.
   /// Rays, not seconds: equal renders must take equal steps.
   bool photonsPay(std::uint64_t path_rays, std::uint64_t light_rays) const;

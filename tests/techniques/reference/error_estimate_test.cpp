@@ -82,6 +82,27 @@ TEST(ErrorEstimate, OfBatchesIsTheTextbookVariance) {
   EXPECT_DOUBLE_EQ(variance.z, 0.0);  // every pass gave 0.5
 }
 
+// Photons are spread evenly in aligned blocks, which a mean over many batches is to know of.
+TEST(ErrorEstimate, ClosesBatchesOfPhotonsInBlocksThatGrow) {
+  Film film(1, 1, LayerNeeds({"caustic"}));
+  ErrorEstimate errors(film, {"caustic"});
+  std::vector<std::uint64_t> closed_at;
+  std::uint64_t before = 0;
+  for (std::uint64_t batch = 1; batch <= 64; ++batch) {
+    film.caustic.add(0, vec3(1.0F));
+    errors.closeFullLightBatch(batch);
+    if (errors.batches() != before) closed_at.push_back(batch);
+    before = errors.batches();
+  }
+  EXPECT_EQ(closed_at,
+            (std::vector<std::uint64_t>{1, 2, 3, 4, 5, 6, 7, 8, 10, 12, 14, 16, 20, 24, 28, 32, 40, 48, 56, 64}));
+  film.caustic.add(0, vec3(1.0F));
+  errors.closeFullLightBatch(65);
+  EXPECT_EQ(errors.batches(), before);
+  errors.closeLightBatch(65);
+  EXPECT_EQ(errors.batches(), before + 1);
+}
+
 TEST(ErrorEstimate, OfOneBatchIsNotKnown) {
   const RenderResult result = renderReference(makeScene(), lookAtBall(), makeSettings(8, 1, 1000, {"direct_error"}));
   EXPECT_EQ(result.image.layers[0].image.pixels[0], std::numeric_limits<float>::infinity());

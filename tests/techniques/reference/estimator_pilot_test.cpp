@@ -33,7 +33,7 @@ SceneData underLight(SceneData scene, Light light) {
 SceneData makeFrostedGlassUnderSky() {
   SceneData scene = loadScene("builtin:cognac?light=env");
   for (Material& material : scene.materials)
-    if (material.transmission > 0.0F) material.roughness = 0.25F;
+    if (material.transmission > 0.0F) material.roughness = 0.35F;
   return scene;
 }
 
@@ -123,6 +123,37 @@ TEST(EstimatorChoice, BlursNoCausticWhoseOwnErrorIsEstimated) {
   EXPECT_EQ(choiceFor({"caustic", "irradiance", "irradiance_error"}, 0.0), "footprint");
   EXPECT_EQ(choiceFor({"beauty", "caustic_error", "caustic"}, 0.0), "light");
   EXPECT_EQ(choiceFor({"caustic"}, 0.1), "light");
+}
+
+// What caustics light in turn is smooth: as a part of the whole picture it may be blurred, alone it is not.
+TEST(EstimatorChoice, GathersIndirectLightWhereItIsAPartOfBeauty) {
+  const SceneData scene = makeFrostedGlassUnderSky();
+  const auto choiceFor = [&](const std::vector<std::string>& layers) {
+    return test::renderReference(scene, scene.cameras[0], makeSettings(16, 1, 1 << 10, layers))
+        .image.metadata.at("estimator.indirect");
+  };
+  EXPECT_EQ(choiceFor({"beauty"}), "photon-map");
+  EXPECT_EQ(choiceFor({"indirect", "irradiance"}), "light");
+  EXPECT_EQ(choiceFor({"beauty", "caustic", "caustic_error"}), "light");
+}
+
+TEST(EstimatorChoice, GatheredIndirectLightIsAsBrightAsThatOfPhotonsInPixels) {
+  SceneData scene = test::makeBallScene(test::makeMetal(vec3(0.9F)), 48);
+  test::addObject(scene, makeRectangle("wall", dvec3(-1.6, 2, 0), dvec3(0, 0, 4), dvec3(0, 2, 0)),
+                  test::makeDiffuse(vec3(0.8F)));
+  scene.lights.push_back(test::makePoint(vec3(1.5F, 1.6F, 0.2F), vec3(9.0F)));
+  const Camera camera = makeCamera("wall", vec3(3.5F, 3.0F, 3.0F), vec3(-0.5F, 0.6F, 0), radians(45));
+  const auto render = [&](const char* estimator) {
+    RenderSettings settings = makeSettings(24, 64, 1 << 21, {"beauty", "indirect", "irradiance"});
+    settings.params.set("estimator", estimator);
+    return test::renderReference(scene, camera, settings);
+  };
+  const RenderResult gathered = render("auto"), seen = render("footprint");
+  ASSERT_EQ(gathered.image.metadata.at("estimator.indirect"), "photon-map");
+  for (const char* layer : {"indirect", "irradiance"}) {
+    const double expected = test::meanOf(*seen.image.find(layer)).x;
+    EXPECT_NEAR(test::meanOf(*gathered.image.find(layer)).x, expected, 0.01 * expected) << layer;
+  }
 }
 
 // Paths for what is seen through glass, photons for the rest: each path is still counted once.

@@ -73,6 +73,15 @@ TEST(GatherProbe, TellsPhotonsFromPaths) {
   }
 }
 
+TEST(GatherProbe, KnowsNothingOfBatchesThatNoPathGathered) {
+  Rounds some(0.4, 0.1), all(0.4, 0.1);
+  for (const int count : {4, 4, 0, 0, 6, 0, 4}) some.gatherBatch(count);
+  for (const int count : {4, 4, 6, 4}) all.gatherBatch(count);
+  // Not the same random numbers: those that nobody gathered took some.
+  EXPECT_NEAR(some.probe().photonsShare(), all.probe().photonsShare(), 0.15);
+  EXPECT_NEAR(some.probe().photonsShare(), some.expectedShare(), 0.1);
+}
+
 TEST(GatherProbe, BeforeTwoBatchesIsUnknown) {
   Rounds rounds(0.4, 0.1);
   EXPECT_EQ(rounds.probe().photonsShare(), 1.0);

@@ -45,9 +45,9 @@ TEST(ChooseTypicalRadius, OfFewPhotonsReachesThemAll) {
 
 TEST(ShrinkAreas, IsTheProductOfTheStepsBefore) {
   double product = 1.0;
-  for (std::uint64_t batch = 0; batch < 40; ++batch) {
+  for (std::uint64_t batch = 0; batch < 400; ++batch) {
     const auto j = static_cast<double>(batch);
-    if (batch > 0) product *= (j + 2.0 / 3.0) / (j + 1.0);
+    if (batch > 0) product *= (j + 64.0 + 2.0 / 3.0) / (j + 64.0 + 1.0);
     EXPECT_NEAR(shrinkAreas(batch) / product, 1.0, 1e-5) << batch;
   }
 }
