@@ -24,7 +24,7 @@ class GatherProbe {
 
   /// After a round of paths. @param passes  that the film holds, by tile
   void takeRound(std::span<const std::uint64_t> passes);
-  /// The next round gathers other photons.
+  /// The next round gathers other photons. Batches that no round gathered leave no trace.
   void closeBatch();
   /// Of the variance of the mean, relative to what is seen and summed over the picture, the part that is the photons':
   /// 0 to 1. Unknown, before two batches were gathered by two rounds each, it is 1.

@@ -80,7 +80,8 @@ bool Steering::mayGatherOn(std::uint64_t rounds_of_batch, std::uint64_t rounds) 
 }
 
 bool Steering::ungatheredPhotonsPay(std::uint64_t path_rays, std::uint64_t light_rays) const {
-  return isKnown() && error_.error.from_lights * static_cast<double>(path_rays) >=
+  // Not where both are 0, as in a picture that is still black: then paths may find something.
+  return isKnown() && error_.error.from_lights * static_cast<double>(path_rays) >
                           error_.error.from_eye * static_cast<double>(light_rays);
 }
 

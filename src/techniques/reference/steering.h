@@ -43,7 +43,8 @@ class Steering {
   /// After a round of paths. @param gather  the same photons as the next: batches are closed by takePhotons(). Else
   /// they are closed where they are long enough
   void takePaths(const EyePasses& passes, bool gather);
-  /// After a batch of photons. @param gathered  paths gathered the one before: all that did are one batch
+  /// After a batch of photons. @param gathered  paths gathered those before: passes that gathered the same batch belong
+  /// into one batch of theirs
   void takePhotons(const EyePasses& passes, std::uint64_t batches, bool gathered);
   /// At the end: nothing is left out of the estimate.
   void takeRest(const EyePasses& passes, std::uint64_t batches);
@@ -60,7 +61,8 @@ class Steering {
   bool mayGatherOn(std::uint64_t rounds_of_batch, std::uint64_t rounds) const;
   /// Do photons lessen the error more than paths that gather the latest batch would, even if no path gathers it?
   bool ungatheredPhotonsPay(std::uint64_t path_rays, std::uint64_t light_rays) const;
-  /// Have so few rounds gathered them that more are due, whatever pays?
+  /// Have so few rounds gathered them that more are due, whatever pays? Until errors are known several: the noise of
+  /// paths themselves is what rounds of one batch differ by.
   bool mustGatherOn(std::uint64_t rounds_of_batch) const { return rounds_of_batch < (isKnown() ? 1 : batch_passes_); }
   /// Do photons lessen the error more by another ray? A variance falls by its share per pass, and a pass costs rays.
   /// Rays, not seconds: equal renders must take equal steps.
