@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <set>
 
 namespace nephroid {
 namespace {
@@ -35,31 +36,50 @@ std::vector<GridPhoton> collect(const PhotonBatch& batch, Deposits kind) {
 
 }  // namespace
 
-template <class ChooseRadius>
-void GatheredPhotons::Map::decide(const std::vector<GridPhoton>& photons, std::uint64_t batch, float expected,
-                                  ChooseRadius&& choose_radius) {
-  if (decided_by != kUndecided && decided_by != batch) return;
+void GatheredPhotons::Map::take(const std::vector<GridPhoton>& photons, std::uint64_t batch, float scale) {
+  if (next_by != kUndecided) radii = next_radii, decided_by = next_by;
+  if (const std::optional<KernelRadii> own = radiiBy(photons)) {
+    next_radii = *own, next_by = batch;
+    if (decided_by == kUndecided) radii = *own, decided_by = batch;
+  }
+  spread(photons, scale);
+}
+
+void GatheredPhotons::Map::retake(const std::vector<GridPhoton>& photons, std::uint64_t batch) {
+  if (batch != decided_by && batch != next_by) return;
+  const std::optional<KernelRadii> own = radiiBy(photons);
+  if (own && batch == decided_by) radii = *own;
+  if (own && batch == next_by) next_radii = *own;
+}
+
+std::optional<KernelRadii> GatheredPhotons::Map::radiiBy(const std::vector<GridPhoton>& photons) const {
   const float radius = choose_radius(photons, expected);
-  if (radius <= 0.0F) return;
-  radii = KernelRadii(photons, expected, kNarrowest * radius, kWidest * radius);
-  decided_by = batch;
+  if (radius <= 0.0F) return std::nullopt;
+  return KernelRadii(photons, expected, kNarrowest * radius, kWidest * radius);
 }
 
 void GatheredPhotons::Map::spread(const std::vector<GridPhoton>& photons, float scale) {
   kernels = decided_by != kUndecided ? KernelMap(photons, radii, scale) : KernelMap();
 }
 
+GatheredPhotons::GatheredPhotons() {
+  caustics_.expected = kCausticPhotons, caustics_.choose_radius = chooseGatherRadius;
+  indirect_.expected = kIndirectPhotons, indirect_.choose_radius = chooseTypicalRadius;
+}
+
 void GatheredPhotons::take(const PhotonBatch& batch, std::uint64_t batch_index) {
+  const float scale = std::sqrt(shrinkAreas(taken_));
   latest_ = batch_index;
   ++taken_;
-  retake(batch, batch_index);
+  caustics_.take(collect(batch, &PhotonTally::caustic_deposits), batch_index, scale);
+  indirect_.take(collect(batch, &PhotonTally::indirect_deposits), batch_index, scale);
 }
 
 void GatheredPhotons::retake(const PhotonBatch& batch, std::uint64_t batch_index) {
   const std::vector<GridPhoton> caustic = collect(batch, &PhotonTally::caustic_deposits),
                                 indirect = collect(batch, &PhotonTally::indirect_deposits);
-  caustics_.decide(caustic, batch_index, kCausticPhotons, chooseGatherRadius);
-  indirect_.decide(indirect, batch_index, kIndirectPhotons, chooseTypicalRadius);
+  caustics_.retake(caustic, batch_index);
+  indirect_.retake(indirect, batch_index);
   if (batch_index != latest_) return;
   const float scale = std::sqrt(shrinkAreas(taken_ - 1));
   caustics_.spread(caustic, scale);
@@ -67,13 +87,12 @@ void GatheredPhotons::retake(const PhotonBatch& batch, std::uint64_t batch_index
 }
 
 std::vector<std::uint64_t> GatheredPhotons::batchesToRetake() const {
-  std::vector<std::uint64_t> batches;
+  std::set<std::uint64_t> batches;
   for (const Map* map : {&caustics_, &indirect_})
-    if (map->decided_by != kUndecided) batches.push_back(map->decided_by);
-  if (taken_ > 0) batches.push_back(latest_);
-  std::sort(batches.begin(), batches.end());
-  batches.erase(std::unique(batches.begin(), batches.end()), batches.end());
-  return batches;
+    for (const std::uint64_t batch : {map->decided_by, map->next_by})
+      if (batch != kUndecided) batches.insert(batch);
+  if (taken_ > 0) batches.insert(latest_);
+  return {batches.begin(), batches.end()};
 }
 
 float shrinkAreas(std::uint64_t batch) {
@@ -83,7 +102,7 @@ float shrinkAreas(std::uint64_t batch) {
                                      std::lgamma(first + k + 1.0) + std::lgamma(first + 1.0)));
 }
 
-float chooseTypicalRadius(const std::vector<GridPhoton>& photons, float expected) {
+float chooseTypicalRadius(std::span<const GridPhoton> photons, float expected) {
   // Of some photons the distance to the tenth other among some; among all of them it is the nearer the more they are.
   constexpr std::size_t kAsked = 64, kOthers = 1 << 14;
   if (photons.size() < 2) return 0.0F;

@@ -6,6 +6,8 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
+#include <span>
 #include <vector>
 
 #include "techniques/reference/photon_batch.h"
@@ -16,8 +18,10 @@ namespace nephroid {
 
 class GatheredPhotons {
  public:
-  /// Takes the place of the batch taken before, under smaller kernels. The first that has photons decides how wide
-  /// kernels are where. @param batch_index  from 0; not all batches need be taken
+  GatheredPhotons();
+  /// Takes the place of the batch taken before, under smaller kernels. How wide kernels are where is decided by that
+  /// batch, or by its own photons where there was none: chance that is in the widths must not be in those that they
+  /// spread, nor be the same in all batches. @param batch_index  from 0; not all batches need be taken
   void take(const PhotonBatch& batch, std::uint64_t batch_index);
   /// Is this the batch taken last?
   bool holds(std::uint64_t batch_index) const { return taken_ > 0 && latest_ == batch_index; }
@@ -32,20 +36,24 @@ class GatheredPhotons {
   void retake(const PhotonBatch& batch, std::uint64_t batch_index);
   template <class State>
   void visitState(State& state) {
-    for (std::uint64_t* number : {&caustics_.decided_by, &indirect_.decided_by, &latest_, &taken_})
-      state.value(*number);
+    for (Map* map : {&caustics_, &indirect_})
+      for (std::uint64_t* batch : {&map->decided_by, &map->next_by}) state.value(*batch);
+    state.value(latest_);
+    state.value(taken_);
   }
 
  private:
   static constexpr std::uint64_t kUndecided = ~std::uint64_t{0};
   struct Map {
-    KernelRadii radii;
+    float expected = 0.0F;  ///< photons under a kernel
+    float (*choose_radius)(std::span<const GridPhoton> photons, float expected) = nullptr;
+    KernelRadii radii, next_radii;
+    std::uint64_t decided_by = kUndecided, next_by = kUndecided;  ///< the batches that these two are by
     KernelMap kernels;
-    std::uint64_t decided_by = kUndecided;  ///< batch
 
-    template <class ChooseRadius>
-    void decide(const std::vector<GridPhoton>& photons, std::uint64_t batch, float expected,
-                ChooseRadius&& choose_radius);
+    void take(const std::vector<GridPhoton>& photons, std::uint64_t batch, float scale);
+    void retake(const std::vector<GridPhoton>& photons, std::uint64_t batch);
+    std::optional<KernelRadii> radiiBy(const std::vector<GridPhoton>& photons) const;
     void spread(const std::vector<GridPhoton>& photons, float scale);
   };
 
@@ -60,6 +68,6 @@ float shrinkAreas(std::uint64_t batch);
 /// A first radius under which half of the photons have about `expected` others, however unevenly they lie: a few that
 /// are far from the rest do not widen it.
 /// @return  m; 0 if there are fewer than two
-float chooseTypicalRadius(const std::vector<GridPhoton>& photons, float expected);
+float chooseTypicalRadius(std::span<const GridPhoton> photons, float expected);
 
 }  // namespace nephroid

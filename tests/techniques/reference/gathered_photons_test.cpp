@@ -39,7 +39,7 @@ TEST(ChooseTypicalRadius, IsNotWidenedByAFewPhotonsFarAway) {
 TEST(ChooseTypicalRadius, OfFewPhotonsReachesThemAll) {
   const std::vector<GridPhoton> two{{vec3(0), vec3(0, -1, 0), vec3(1)}, {vec3(3, 0, 4), vec3(0, -1, 0), vec3(1)}};
   EXPECT_FLOAT_EQ(chooseTypicalRadius(two, 10), 5.0F);
-  EXPECT_EQ(chooseTypicalRadius({two[0]}, 10), 0.0F);
+  EXPECT_EQ(chooseTypicalRadius(std::span(two).first(1), 10), 0.0F);
   EXPECT_EQ(chooseTypicalRadius({}, 10), 0.0F);
 }
 
