@@ -17,6 +17,8 @@ namespace {
 /// Later batches from the eye are as long as this share of all passes: points of the sampler are well spread together,
 /// so that a mean over them errs less than the spread of short runs says.
 constexpr std::uint64_t kBatchShare = 4;
+/// Batches of a generation at least.
+constexpr std::uint64_t kGenerationBatches = 4;
 
 using PlaneOf = const FilmPlane* LayerPlanes::*;
 
@@ -47,12 +49,19 @@ std::vector<std::string> layersWithError(const std::vector<std::string>& asked, 
   return layers;
 }
 
-BatchSpread::BatchSpread(std::size_t pixels) : closed_(static_cast<int>(pixels), 1), squares_(closed_) {}
+BatchSpread::BatchSpread(std::size_t pixels)
+    : closed_(static_cast<int>(pixels), 1), squares_(closed_), generation_(closed_) {}
 
-void BatchSpread::close(std::size_t pixel, dvec3 sum, double count) {
+dvec3 BatchSpread::close(std::size_t pixel, dvec3 sum, double count, double before) {
   const dvec3 gained = sum - closed_.at(pixel);
-  closed_.set(pixel, sum);
   squares_.set(pixel, squares_.at(pixel) + gained * gained / count);
+  dvec3 deviation(0.0);
+  if (before > 0.0) {
+    const dvec3 apart = gained / count - (closed_.at(pixel) - generation_.at(pixel)) / before;
+    deviation = apart * apart * (count * before / (count + before));
+  }
+  closed_.set(pixel, sum);
+  return deviation;
 }
 
 dvec3 BatchSpread::varianceOfPass(std::size_t pixel, std::uint64_t batches, std::uint64_t passes) const {
@@ -70,8 +79,24 @@ ErrorEstimate::ErrorEstimate(const Film& film, const std::vector<std::string>& l
     std::vector<LayerPlanes> planes = planesOf(film, name);
     const std::size_t of_eye = anyActive(planes, &LayerPlanes::from_eye) ? pixels : 0;
     const std::size_t of_lights = anyActive(planes, &LayerPlanes::from_lights) ? pixels : 0;
-    layers_.push_back({name, std::move(planes), BatchSpread(of_eye), BatchSpread(of_lights)});
+    const std::vector<Recent> none(tiles_.count());
+    layers_.push_back({name, std::move(planes), {BatchSpread(of_eye), none}, {BatchSpread(of_lights), none}});
   }
+}
+
+void ErrorEstimate::Direction::close(std::uint64_t gained) {
+  ++batches, passes += gained;
+  freedom = generation_batches++;
+}
+
+bool ErrorEstimate::Direction::endsGeneration() const {
+  return generation_batches >= kGenerationBatches && passes >= 2 * generation_begin;
+}
+
+void ErrorEstimate::Direction::beginGeneration() {
+  previous_freedom = freedom;
+  generation_begin = passes;
+  freedom = generation_batches = 0;
 }
 
 template <class Visit>
@@ -81,20 +106,52 @@ void ErrorEstimate::visitPixels(const Visit& visit) const {
   });
 }
 
+/// What a tile of a layer gained is a batch, which its direction counts already.
+/// @param before  passes of the generation without it  @param floor  see floorOf()
+void ErrorEstimate::closeTile(LayerSpread& layer, OfDirection LayerSpread::*direction, std::size_t tile,
+                              std::uint64_t gained, std::uint64_t before, double floor) const {
+  OfDirection& of = layer.*direction;
+  if (!of.spread.active()) return;
+  const PlaneOf plane = direction == &LayerSpread::eye ? &LayerPlanes::from_eye : &LayerPlanes::from_lights;
+  tiles_.visitPixels(tile, [&](int x, int y) {
+    const std::size_t pixel = tiles_.pixelOf(x, y);
+    const dvec3 deviation = of.spread.close(pixel, sumOf(layer.planes, plane, pixel), static_cast<double>(gained),
+                                            static_cast<double>(before));
+    const dvec3 mean = meanAt(layer, tile, pixel);
+    for (int c = 0; c < 3; ++c)
+      if (deviation[c] > 0.0) of.recent[tile].current += deviation[c] / (mean[c] * mean[c] + floor);
+  });
+}
+
+void ErrorEstimate::beginGeneration(OfDirection LayerSpread::*direction, std::size_t tile) {
+  for (LayerSpread& layer : layers_) {
+    OfDirection& of = layer.*direction;
+    if (!of.spread.active()) continue;
+    tiles_.visitPixels(tile, [&](int x, int y) { of.spread.beginGeneration(tiles_.pixelOf(x, y)); });
+    of.recent[tile] = {.current = 0.0, .previous = of.recent[tile].current};
+  }
+}
+
+std::vector<double> ErrorEstimate::floors() const {
+  std::vector<double> floors;
+  for (const LayerSpread& layer : layers_) floors.push_back(floorOf(layer));
+  return floors;
+}
+
 template <class IsDue>
 void ErrorEstimate::closeEyeBatchesWhere(std::span<const std::uint64_t> passes, const IsDue& is_due) {
+  const std::vector<double> floor = floors();
   parallelFor(tiles_.count(), [&](std::size_t tile) {
     Direction& closed = eye_[tile];
     const std::uint64_t gained = passes[tile] - closed.passes;
     if (gained == 0 || !is_due(closed, gained)) return;
-    for (LayerSpread& layer : layers_) {
-      if (!layer.eye.active()) continue;
-      tiles_.visitPixels(tile, [&](int x, int y) {
-        const std::size_t pixel = tiles_.pixelOf(x, y);
-        layer.eye.close(pixel, sumOf(layer.planes, &LayerPlanes::from_eye, pixel), static_cast<double>(gained));
-      });
-    }
-    closed = {closed.batches + 1, passes[tile]};
+    const std::uint64_t before = closed.ofGeneration();
+    closed.close(gained);
+    for (std::size_t i = 0; i < layers_.size(); ++i)
+      closeTile(layers_[i], &LayerSpread::eye, tile, gained, before, floor[i]);
+    if (!closed.endsGeneration()) return;
+    beginGeneration(&LayerSpread::eye, tile);
+    closed.beginGeneration();
   });
 }
 
@@ -110,14 +167,16 @@ void ErrorEstimate::closeFullEyeBatches(std::span<const std::uint64_t> passes, s
 
 void ErrorEstimate::closeLightBatch(std::uint64_t passes) {
   if (passes == lights_.passes) return;
-  const auto count = static_cast<double>(passes - lights_.passes);
-  for (LayerSpread& layer : layers_) {
-    if (!layer.lights.active()) continue;
-    visitPixels([&](std::size_t, int, int, std::size_t pixel) {
-      layer.lights.close(pixel, sumOf(layer.planes, &LayerPlanes::from_lights, pixel), count);
-    });
-  }
-  lights_ = {lights_.batches + 1, passes};
+  const std::uint64_t gained = passes - lights_.passes, before = lights_.ofGeneration();
+  const std::vector<double> floor = floors();
+  lights_.close(gained);
+  const bool ends = lights_.endsGeneration();
+  parallelFor(tiles_.count(), [&](std::size_t tile) {
+    for (std::size_t i = 0; i < layers_.size(); ++i)
+      closeTile(layers_[i], &LayerSpread::lights, tile, gained, before, floor[i]);
+    if (ends) beginGeneration(&LayerSpread::lights, tile);
+  });
+  if (ends) lights_.beginGeneration();
 }
 
 void ErrorEstimate::closeFullLightBatch(std::uint64_t passes) {
@@ -151,13 +210,19 @@ dvec3 ErrorEstimate::varianceOfMean(const BatchSpread& spread, const Direction& 
   return spread.varianceOfPass(pixel, closed.batches, closed.passes) / static_cast<double>(passes);
 }
 
+double ErrorEstimate::recentVarianceOfPass(const OfDirection& direction, std::size_t tile, const Direction& closed) {
+  if (!direction.spread.active() || closed.batches == 0) return 0.0;
+  if (closed.batches == 1) return std::numeric_limits<double>::infinity();
+  return direction.recent[tile].total() / closed.recentFreedom();
+}
+
 Image ErrorEstimate::standardError(std::string_view layer, std::span<const std::uint64_t> passes_from_eye,
                                    std::uint64_t batches_from_lights) const {
-  const LayerSpread& spread = find(layer);
+  const LayerSpread& of = find(layer);
   Image image(tiles_.width(), tiles_.height(), 3);
   visitPixels([&](std::size_t tile, int x, int y, std::size_t pixel) {
-    const dvec3 variance = varianceOfMean(spread.eye, eye_[tile], pixel, passes_from_eye[tile]) +
-                           varianceOfMean(spread.lights, lights_, pixel, batches_from_lights);
+    const dvec3 variance = varianceOfMean(of.eye.spread, eye_[tile], pixel, passes_from_eye[tile]) +
+                           varianceOfMean(of.lights.spread, lights_, pixel, batches_from_lights);
     image.setRgb(x, y, vec3(glm::sqrt(variance)));
   });
   return image;
@@ -165,10 +230,10 @@ Image ErrorEstimate::standardError(std::string_view layer, std::span<const std::
 
 dvec3 ErrorEstimate::meanAt(const LayerSpread& layer, std::size_t tile, std::size_t pixel) const {
   dvec3 mean(0.0);
-  if (layer.eye.active() && eye_[tile].passes > 0)
-    mean += layer.eye.closedSum().at(pixel) / static_cast<double>(eye_[tile].passes);
-  if (layer.lights.active() && lights_.passes > 0)
-    mean += layer.lights.closedSum().at(pixel) / static_cast<double>(lights_.passes);
+  if (layer.eye.spread.active() && eye_[tile].passes > 0)
+    mean += layer.eye.spread.closedSum().at(pixel) / static_cast<double>(eye_[tile].passes);
+  if (layer.lights.spread.active() && lights_.passes > 0)
+    mean += layer.lights.spread.closedSum().at(pixel) / static_cast<double>(lights_.passes);
   return mean;
 }
 
@@ -187,38 +252,22 @@ double ErrorEstimate::floorOf(const LayerSpread& layer) const {
 
 RelativeError ErrorEstimate::relMse(std::string_view name) const {
   const LayerSpread& layer = find(name);
-  const double floor = floorOf(layer);
-  std::vector<RelativeError> tiles(tiles_.count());
-  visitPixels([&](std::size_t tile, int, int, std::size_t pixel) {
-    const dvec3 mean = meanAt(layer, tile, pixel);
-    const dvec3 scale = mean * mean + floor;
-    const dvec3 eye = varianceOfMean(layer.eye, eye_[tile], pixel, eye_[tile].passes);
-    const dvec3 lights = varianceOfMean(layer.lights, lights_, pixel, lights_.passes);
-    for (int c = 0; c < 3; ++c) {
-      // A black pixel without spread in a black layer: 0/0 is no error.
-      if (eye[c] > 0.0) tiles[tile].from_eye += eye[c] / scale[c];
-      if (lights[c] > 0.0) tiles[tile].from_lights += lights[c] / scale[c];
-    }
-  });
   const double values = 3.0 * tiles_.width() * tiles_.height();
   RelativeError error;
-  for (const RelativeError& tile : tiles)
-    error.from_eye += tile.from_eye / values, error.from_lights += tile.from_lights / values;
+  for (std::size_t tile = 0; tile < tiles_.count(); ++tile) {
+    const double eye = recentVarianceOfPass(layer.eye, tile, eye_[tile]);
+    const double lights = recentVarianceOfPass(layer.lights, tile, lights_);
+    if (eye > 0.0) error.from_eye += eye / static_cast<double>(eye_[tile].passes) / values;
+    if (lights > 0.0) error.from_lights += lights / static_cast<double>(lights_.passes) / values;
+  }
   return error;
 }
 
 std::vector<double> ErrorEstimate::variancesOfPass(std::string_view name) const {
   const LayerSpread& layer = find(name);
-  std::vector<double> variances(tiles_.count(), 0.0);
-  if (!layer.eye.active()) return variances;
-  const double floor = floorOf(layer);
-  visitPixels([&](std::size_t tile, int, int, std::size_t pixel) {
-    const dvec3 mean = meanAt(layer, tile, pixel);
-    const dvec3 scale = mean * mean + floor;
-    const dvec3 variance = layer.eye.varianceOfPass(pixel, eye_[tile].batches, eye_[tile].passes);
-    for (int c = 0; c < 3; ++c)
-      if (variance[c] > 0.0) variances[tile] += variance[c] / scale[c];
-  });
+  std::vector<double> variances;
+  for (std::size_t tile = 0; tile < tiles_.count(); ++tile)
+    variances.push_back(recentVarianceOfPass(layer.eye, tile, eye_[tile]));
   return variances;
 }
 

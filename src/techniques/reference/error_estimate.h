@@ -5,8 +5,11 @@
 // over n_b passes, S = Σ S_b and N = Σ n_b, the variance of the mean is (Σ S_b²/n_b − S²/N) / ((B − 1) N).
 // What is summed is the layer, not its parts: paths of one pass (photons of one batch) are shared by all layers, so
 // that the variance of `beauty` is not the sum of theirs.
-// Limits: it knows noise alone, no kernel's blur, and nothing of light that no path has found yet. Low-discrepancy
-// points err less than their spread says where the integrand is smooth, so it is rather too large there.
+// Low-discrepancy points err less than the spread of short runs of them says. So batches grow with the render, an
+// eighth to a quarter of it each, and how large errors are on the whole is what the last four to eight of them say (a
+// generation, see below); all batches together say how errors lie within a tile, for which a few are too few.
+// Limits: it knows noise alone, no kernel's blur, and nothing of light that no path has found yet. It is what a mean
+// over an eighth to a quarter of the points would lead one to expect: rather too large where the integrand is smooth.
 #pragma once
 
 #include <cstdint>
@@ -31,8 +34,12 @@ class BatchSpread {
   /// @param pixels  0 for a direction that adds nothing to the layer
   explicit BatchSpread(std::size_t pixels);
   /// What the planes gained since the last call is a batch. Different pixels from any thread.
-  /// @param count  of passes in it
-  void close(std::size_t pixel, dvec3 sum, double count);
+  /// @param count  of passes in it  @param before  of passes in its generation
+  /// @return what it adds to the sum of the squares, weighted by passes, by which batches of its generation deviate
+  /// from their mean
+  dvec3 close(std::size_t pixel, dvec3 sum, double count, double before);
+  /// Batches from here on are a generation of their own.
+  void beginGeneration(std::size_t pixel) { generation_.set(pixel, closed_.at(pixel)); }
   /// Variance of one pass. @param batches  closed, >= 2  @param passes  in them
   dvec3 varianceOfPass(std::size_t pixel, std::uint64_t batches, std::uint64_t passes) const;
 
@@ -42,11 +49,13 @@ class BatchSpread {
   void visitState(State& state) {
     state.values(closed_.values());
     state.values(squares_.values());
+    state.values(generation_.values());
   }
 
  private:
-  FilmPlane closed_;   ///< sum of all closed batches
-  FilmPlane squares_;  ///< Σ S_b²/n_b
+  FilmPlane closed_;      ///< sum of all closed batches
+  FilmPlane squares_;     ///< Σ S_b²/n_b
+  FilmPlane generation_;  ///< sum of those before this generation
 };
 
 /// relMSE of a picture by its own standard errors, in the parts that more passes from the eye or more photons lessen.
@@ -59,7 +68,7 @@ struct RelativeError {
 /// @param asked         names of layers  @param target_error  0: none
 std::vector<std::string> layersWithError(const std::vector<std::string>& asked, double target_error);
 
-/// Standard errors of several layers of a film. Memory: 96 bytes a pixel and layer (48 where only one direction adds).
+/// Standard errors of several layers of a film. Memory: 144 bytes a pixel and layer (72 where only one direction adds).
 class ErrorEstimate {
  public:
   /// @param film    must outlive it
@@ -107,23 +116,52 @@ class ErrorEstimate {
     state.values(std::span(eye_));
     state.value(lights_);
     for (LayerSpread& layer : layers_)
-      for (BatchSpread* spread : {&layer.eye, &layer.lights}) spread->visitState(state);
+      for (LayerSpread::OfDirection* direction : {&layer.eye, &layer.lights}) {
+        direction->spread.visitState(state);
+        state.values(std::span(direction->recent));
+      }
   }
 
  private:
+  /// How far a direction has come. Generations double the passes: each is of four batches or more.
   struct Direction {
-    std::uint64_t batches = 0, passes = 0;  ///< closed
+    std::uint64_t batches = 0, passes = 0;            ///< closed
+    std::uint64_t generation_begin = 0;               ///< passes before this generation
+    std::uint64_t freedom = 0, previous_freedom = 0;  ///< batches less one, of this generation and the one before
+    std::uint64_t generation_batches = 0;
+
+    std::uint64_t ofGeneration() const { return passes - generation_begin; }
+    double recentFreedom() const { return static_cast<double>(freedom + previous_freedom); }
+    void close(std::uint64_t gained);
+    bool endsGeneration() const;
+    void beginGeneration();
+  };
+  /// Squares of a tile by which batches deviate from the mean of their generation, relative to what is seen.
+  struct Recent {
+    double current = 0.0, previous = 0.0;
+    double total() const { return current + previous; }
   };
   struct LayerSpread {
+    struct OfDirection {
+      BatchSpread spread;
+      std::vector<Recent> recent;  ///< by tile
+    };
     std::string name;
     std::vector<LayerPlanes> planes;
-    BatchSpread eye, lights;
+    OfDirection eye, lights;
   };
   const LayerSpread& find(std::string_view layer) const;
   template <class IsDue>
   void closeEyeBatchesWhere(std::span<const std::uint64_t> passes, const IsDue& is_due);
   dvec3 meanAt(const LayerSpread& layer, std::size_t tile, std::size_t pixel) const;
   double floorOf(const LayerSpread& layer) const;
+  std::vector<double> floors() const;
+  using OfDirection = LayerSpread::OfDirection;
+  void closeTile(LayerSpread& layer, OfDirection LayerSpread::*direction, std::size_t tile, std::uint64_t gained,
+                 std::uint64_t before, double floor) const;
+  void beginGeneration(OfDirection LayerSpread::*direction, std::size_t tile);
+  /// Σ σ₁²/(I² + (0.01·mean I)²) over pixels and channels of a tile, by the last generations: infinite of one batch.
+  static double recentVarianceOfPass(const OfDirection& direction, std::size_t tile, const Direction& closed);
   static dvec3 varianceOfMean(const BatchSpread& spread, const Direction& closed, std::size_t pixel,
                               std::uint64_t passes);
   /// Calls `visit(tile, x, y, pixel)`, in parallel for different tiles.
