@@ -14,8 +14,32 @@ constexpr std::size_t kChunk = 4096;
 constexpr std::size_t kMostGrids = 8;
 /// For rounding: a cell that a disc only just misses may be entered, one that it meets must be.
 constexpr float kSlack = 1.001F;
+/// Half-axes of footprints, in radii of a disc: a fold has no width, and far from it a straight line is a poor guess.
+constexpr float kNarrowest = 0.3F, kWidest = 4.0F;
 
-float radiusOf(const KernelPhoton& photon) { return 1.0F / std::sqrt(photon.inverse_squared_radius); }
+/// Of a disc of the same area.
+float radiusOf(const KernelPhoton& photon) { return 1.0F / std::sqrt(photon.inverse_axes); }
+
+/// What spreads a photon. @param radius  of a disc, m  @param scale  of its footprint
+KernelPhoton makeKernel(const GridPhoton& photon, float radius, float scale) {
+  const float longest = length(photon.axes[0]), shortest = length(photon.axes[1]);
+  float a = radius, b = radius;
+  vec3 along;
+  if (longest > 0.0F) {
+    a = radius * std::clamp(scale * longest / radius, kNarrowest, kWidest);
+    b = radius * std::clamp(scale * shortest / radius, kNarrowest, kWidest);
+    along = photon.axes[0] / longest;
+  } else {
+    along = Frame::fromZ(photon.normal).x;
+  }
+  return {.position = photon.position,
+          .across = {along / a, cross(photon.normal, along) / b},
+          .normal = photon.normal,
+          .thickness_squared = kKernelFlatness * kKernelFlatness * a * b,
+          .inverse_axes = 1.0F / (a * b),
+          .dir = photon.dir,
+          .flux = photon.flux};
+}
 
 }  // namespace
 
@@ -43,27 +67,51 @@ class KernelMap::GridBuilder {
     std::uint32_t bucket, photon;
   };
 
-  /// Notes the buckets of all cells that a disc may meet, each once: two cells may share one.
+  /// Notes the buckets of all cells that a kernel may meet, each once: two cells may share one.
   void enter(std::uint32_t index, std::vector<Entry>& found) const {
     const KernelPhoton& photon = photons_[index];
-    const float radius = kSlack * radiusOf(photon), thickness = kKernelFlatness * radius;
-    const vec3 along = glm::abs(photon.normal);
-    const vec3 reach = radius * glm::sqrt(glm::max(1.0F - along * along, vec3(0.0F))) + thickness * along;
-    const float half_cell = 0.5F / grid_.inverse_cell;
-    const float touch = thickness + half_cell * (along.x + along.y + along.z);
-    const glm::ivec3 first = grid_.cellAt(photon.position - reach), last = grid_.cellAt(photon.position + reach);
     const auto begin = static_cast<std::ptrdiff_t>(found.size());
+    visitCells(photon, [&](glm::ivec3 cell) {
+      const std::uint32_t bucket = grid_.bucketOf(cell);
+      const auto is_same = [&](const Entry& e) { return e.bucket == bucket; };
+      if (std::none_of(found.begin() + begin, found.end(), is_same)) found.push_back({bucket, index});
+    });
+  }
+
+  /// By columns along the axis that is nearest to the normal: in each, the plane passes few cells.
+  template <class Visit>
+  void visitCells(const KernelPhoton& photon, Visit&& visit) const {
+    const vec3 along = glm::abs(photon.normal);
+    const int k = along.x >= along.y && along.x >= along.z ? 0 : along.y >= along.z ? 1 : 2;
+    const int u = (k + 1) % 3, v = (k + 2) % 3;
+    const float half_cell = 0.5F / grid_.inverse_cell;
+    const float thickness = kSlack * std::sqrt(photon.thickness_squared);
+    vec3 squares(0.0F);  // of the half-axes, which are as long as one over `across`
+    for (const vec3& a : photon.across) squares += a * a / (dot(a, a) * dot(a, a));
+    const vec3 reach = kSlack * glm::sqrt(squares) + thickness * along;
+    const glm::ivec3 first = grid_.cellAt(photon.position - reach), last = grid_.cellAt(photon.position + reach);
+    const float rise = (half_cell * (along[u] + along[v]) + thickness) / along[k];
+    vec2 half_extent;  // of a cell, in half-axes
+    for (int i = 0; i < 2; ++i) {
+      const vec3 a = glm::abs(photon.across[i]);
+      half_extent[i] = half_cell * (a.x + a.y + a.z) + (kSlack - 1.0F);
+    }
     glm::ivec3 cell;
-    for (cell.z = first.z; cell.z <= last.z; ++cell.z)
-      for (cell.y = first.y; cell.y <= last.y; ++cell.y)
-        for (cell.x = first.x; cell.x <= last.x; ++cell.x) {
-          const vec3 to_middle = grid_.middleOf(cell) - photon.position;
-          const vec3 outside = glm::max(glm::abs(to_middle) - half_cell, vec3(0.0F));
-          if (dot(outside, outside) > radius * radius || std::abs(dot(photon.normal, to_middle)) > touch) continue;
-          const std::uint32_t bucket = grid_.bucketOf(cell);
-          const auto is_same = [&](const Entry& e) { return e.bucket == bucket; };
-          if (std::none_of(found.begin() + begin, found.end(), is_same)) found.push_back({bucket, index});
+    for (cell[v] = first[v]; cell[v] <= last[v]; ++cell[v])
+      for (cell[u] = first[u]; cell[u] <= last[u]; ++cell[u]) {
+        cell[k] = first[k];
+        vec3 to_middle = grid_.middleOf(cell) - photon.position;
+        const float height = -(photon.normal[u] * to_middle[u] + photon.normal[v] * to_middle[v]) / photon.normal[k];
+        vec3 low = photon.position, high = photon.position;
+        low[k] += height - rise, high[k] += height + rise;
+        const int begin_k = std::max(grid_.cellAt(low)[k], first[k]), end_k = std::min(grid_.cellAt(high)[k], last[k]);
+        for (cell[k] = begin_k; cell[k] <= end_k; ++cell[k]) {
+          to_middle = grid_.middleOf(cell) - photon.position;
+          const vec2 middle(dot(to_middle, photon.across[0]), dot(to_middle, photon.across[1]));
+          const vec2 outside = glm::max(glm::abs(middle) - half_extent, vec2(0.0F));
+          if (dot(outside, outside) <= 1.0F) visit(cell);
         }
+      }
   }
 
   /// By bucket, and within each in the order of the photons.
@@ -86,12 +134,11 @@ KernelMap::KernelMap(std::span<const GridPhoton> photons, const KernelRadii& rad
   if (photons.empty()) return;
   photons_.resize(photons.size());
   parallelFor((photons.size() + kChunk - 1) / kChunk, [&](std::size_t c) {
-    for (std::size_t i = c * kChunk; i < std::min((c + 1) * kChunk, photons.size()); ++i) {
-      const float radius = scale * radii.at(photons[i].position);
-      photons_[i] = {photons[i], 1.0F / (radius * radius)};
-    }
+    for (std::size_t i = c * kChunk; i < std::min((c + 1) * kChunk, photons.size()); ++i)
+      photons_[i] = makeKernel(photons[i], scale * radii.at(photons[i].position), scale);
   });
-  const float widest = scale * radii.widest();
+  float widest = 0.0F;
+  for (const KernelPhoton& photon : photons_) widest = std::max(widest, radiusOf(photon));
   std::vector<std::vector<std::uint32_t>> levels(kMostGrids);
   for (std::uint32_t i = 0; i < photons_.size(); ++i) {
     const float halvings = std::max(std::floor(std::log2(widest / radiusOf(photons_[i]))), 0.0F);

@@ -1,8 +1,10 @@
-// Photons, each spread over a disc of the surface on which it ended, found by place.
+// Photons, each spread over an ellipse of the surface on which it ended, found by place.
 //
-// Each is entered in every cell of a grid that its disc meets, so that a place looks into one cell. Discs whose radii
-// are within a factor of two share a grid, whose cells are as wide as the radius of the largest. Built in the order of
-// the photons, so that sums over a place do not depend on threads.
+// The ellipse is the photon's footprint where it has one, which neighbours fill evenly: those of a caustic overlap with
+// little noise, however its sheets lie over each other. Else it is a disc.
+// Each is entered in every cell of a grid that it meets, so that a place looks into one cell. Ellipses whose areas are
+// within a factor of four share a grid, whose cells are as wide as the radius of a disc like the largest. Built in the
+// order of the photons, so that sums over a place do not depend on threads.
 #pragma once
 
 #include <algorithm>
@@ -15,28 +17,41 @@
 
 namespace nephroid {
 
-/// A photon under Epanechnikov's kernel, 2 (1 − r²) over the area of its disc.
-struct KernelPhoton : GridPhoton {
-  float inverse_squared_radius;  ///< of the disc, 1/m²
+/// A photon under Epanechnikov's kernel, 2 (1 − r²) over the area of its ellipse. What tells whether a place is under
+/// it is in one cache line.
+struct alignas(64) KernelPhoton {
+  vec3 position;            ///< world, m
+  vec3 across[2];           ///< r is how long an offset is in these, 1/m
+  vec3 normal;              ///< of the surface there, unit
+  float thickness_squared;  ///< an offset that is under it is no higher, m²
+  float inverse_axes;       ///< one over the product of both half-axes, 1/m²
+  vec3 dir;                 ///< unit, along the travel of light
+  vec3 flux;                ///< W, as in GridPhoton
 
-  /// 1/m². @param squared_radius  r², below 1, in radii of the disc
-  float weightAt(float squared_radius) const { return 2.0F / kPi * inverse_squared_radius * (1.0F - squared_radius); }
-  /// The same of a disc of half the area.
+  /// r², in half-axes. @param offset  from it, m
+  float squaredRadiusOf(vec3 offset) const {
+    const float a = dot(offset, across[0]), b = dot(offset, across[1]);
+    return a * a + b * b;
+  }
+  /// 1/m². @param squared_radius  r², below 1
+  float weightAt(float squared_radius) const { return 2.0F / kPi * inverse_axes * (1.0F - squared_radius); }
+  /// The same of an ellipse of half the area.
   float halfWeightAt(float squared_radius) const {
-    return 4.0F / kPi * inverse_squared_radius * std::max(1.0F - 2.0F * squared_radius, 0.0F);
+    return 4.0F / kPi * inverse_axes * std::max(1.0F - 2.0F * squared_radius, 0.0F);
   }
 };
 
 class KernelMap {
  public:
   KernelMap() = default;
-  /// @param radii  not made by default, where there are photons  @param scale  of all radii
+  /// @param radii  of discs, and what keeps footprints within bounds; not made by default, where there are photons
+  /// @param scale  of all radii and half-axes
   KernelMap(std::span<const GridPhoton> photons, const KernelRadii& radii, float scale);
 
   bool empty() const { return photons_.empty(); }
 
-  /// Calls `visit(photon, r²)` for every photon whose disc holds `position`, if that is on a plane of this normal: a
-  /// disc is thin, so that it does not reach around corners.
+  /// Calls `visit(photon, r²)` for every photon whose ellipse holds `position`, if that is on a plane of this normal:
+  /// an ellipse is thin, so that it does not reach around corners.
   /// @param normal  unit
   template <class Visit>
   void visitKernels(vec3 position, vec3 normal, Visit&& visit) const {
@@ -44,8 +59,8 @@ class KernelMap {
       const std::uint32_t bucket = grid.bucketOf(grid.cellAt(position));
       for (std::uint32_t i = grid.begin[bucket]; i < grid.begin[bucket + 1]; ++i) {
         const KernelPhoton& photon = photons_[grid.entries[i]];
-        const vec3 offset = photon.position - position;
-        const float squared = dot(offset, offset) * photon.inverse_squared_radius;
+        const vec3 offset = position - photon.position;
+        const float squared = photon.squaredRadiusOf(offset);
         if (squared < 1.0F && isThin(photon, offset, normal)) visit(photon, squared);
       }
     }
@@ -65,11 +80,10 @@ class KernelMap {
   };
   class GridBuilder;
 
-  /// Is either off the other's plane by no more than a share of the disc's radius?
+  /// Is either off the other's plane by no more than a share of the ellipse's radius?
   static bool isThin(const KernelPhoton& photon, vec3 offset, vec3 normal) {
-    constexpr float kMost = kKernelFlatness * kKernelFlatness;
     const float height = dot(offset, normal), own = dot(offset, photon.normal);
-    return std::max(height * height, own * own) * photon.inverse_squared_radius <= kMost;
+    return std::max(height * height, own * own) <= photon.thickness_squared;
   }
 
   std::vector<KernelPhoton> photons_;

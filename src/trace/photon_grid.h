@@ -4,6 +4,7 @@
 // in the order of the photons, so that sums over a search do not depend on threads.
 #pragma once
 
+#include <array>
 #include <bit>
 #include <cmath>
 #include <cstdint>
@@ -31,8 +32,10 @@ inline constexpr float kKernelFlatness = 0.3F;
 struct GridPhoton {
   vec3 position;      ///< world, m
   vec3 dir;           ///< unit, along the travel of light
-  vec3 flux;          ///< W
+  vec3 flux;          ///< W, as it counts on the shaded surface (see Bsdf::shadingCosineRatio)
   vec3 normal{0.0F};  ///< of the surface there, unit; where it is asked for
+  /// Half-axes of its footprint on the plane there, perpendicular to each other, m; 0 where it has none.
+  std::array<vec3, 2> axes{vec3(0.0F), vec3(0.0F)};
 };
 
 /// @tparam Photon  has a `position`

@@ -78,14 +78,14 @@ TEST(KernelMap, FindsExactlyTheKernelsThatHoldAPoint) {
     int expected = 0, found = 0;
     for (const GridPhoton& p : photons) {
       const float radius = kScale * radii.at(p.position), most = kKernelFlatness * radius;
-      const vec3 offset = p.position - at;
-      expected += dot(offset, offset) < radius * radius && std::abs(dot(offset, normal)) <= most &&
+      const vec3 offset = p.position - at, along = offset - dot(offset, kNormal) * kNormal;
+      expected += dot(along, along) < radius * radius && std::abs(dot(offset, normal)) <= most &&
                   std::abs(dot(offset, kNormal)) <= most;
     }
     map.visitKernels(at, normal, [&](const KernelPhoton& photon, float squared_radius) {
       ++found;
-      EXPECT_NEAR(squared_radius, dot(photon.position - at, photon.position - at) * photon.inverse_squared_radius,
-                  1e-6);
+      const vec3 offset = photon.position - at, along = offset - dot(offset, kNormal) * kNormal;
+      EXPECT_NEAR(squared_radius, dot(along, along) * photon.inverse_axes, 1e-5);
     });
     EXPECT_EQ(found, expected);
     all += found;
@@ -109,6 +109,47 @@ TEST(KernelMap, SpreadsThePhotonOverItsDiscWithoutARest) {
   }
   EXPECT_NEAR(whole, 1.0, 1e-3);
   EXPECT_NEAR(half, 1.0, 1e-3);
+}
+
+TEST(KernelMap, SpreadsAFootprintOverItsEllipse) {
+  // Askew to the grid; r² is the distance in half-axes, and what lies along the longer one counts farther out.
+  constexpr float kLong = 0.21F, kShort = 0.05F;
+  const vec3 u = normalize(onPlane(0.6F, 0.8F)), v = cross(kNormal, u);
+  GridPhoton photon{onPlane(0.3F, -0.2F), vec3(0, -1, 0), vec3(1.0F), kNormal};
+  photon.axes = {kLong * u, kShort * v};
+  const std::vector<GridPhoton> one{photon};
+  const KernelMap map(one, KernelRadii(one, 10.0F, 0.1F, 0.1F), 1.0F);
+  constexpr int kPlaces = 300;
+  constexpr float kSide = 0.5F / kPlaces;
+  double whole = 0.0, along = 0.0, across = 0.0;
+  for (int i = 0; i < kPlaces * kPlaces; ++i) {
+    const float x = kSide * (static_cast<float>(i % kPlaces) - 0.5F * kPlaces);
+    const float y = kSide * (static_cast<float>(i / kPlaces) - 0.5F * kPlaces);
+    map.visitKernels(photon.position + x * u + y * v, kNormal, [&](const KernelPhoton& kernel, float squared_radius) {
+      EXPECT_NEAR(squared_radius, x * x / (kLong * kLong) + y * y / (kShort * kShort), 1e-4);
+      const double weight = kernel.weightAt(squared_radius) * kSide * kSide;
+      whole += weight, along += weight * x * x, across += weight * y * y;
+    });
+  }
+  EXPECT_NEAR(whole, 1.0, 2e-3);
+  // Of Epanechnikov's kernel over a disc of radius 1 the variance is a sixth.
+  EXPECT_NEAR(along / (kLong * kLong), 1.0 / 6.0, 2e-3);
+  EXPECT_NEAR(across / (kShort * kShort), 1.0 / 6.0, 2e-3);
+}
+
+TEST(KernelMap, KeepsFootprintsWithinBoundsOfTheDisc) {
+  GridPhoton photon{onPlane(0.0F, 0.0F), vec3(0, -1, 0), vec3(1.0F), kNormal};
+  const vec3 u(1, 0, 0), v = cross(kNormal, u);
+  photon.axes = {10.0F * u, 1e-6F * v};
+  const std::vector<GridPhoton> one{photon};
+  const KernelMap map(one, KernelRadii(one, 10.0F, 0.1F, 0.1F), 1.0F);
+  const auto isUnder = [&](vec3 offset) {
+    bool found = false;
+    map.visitKernels(photon.position + offset, kNormal, [&](const KernelPhoton&, float) { found = true; });
+    return found;
+  };
+  EXPECT_TRUE(isUnder(0.39F * u) && !isUnder(0.41F * u));
+  EXPECT_TRUE(isUnder(0.029F * v) && !isUnder(0.031F * v));
 }
 
 TEST(KernelMap, DoesNotReachAroundCorners) {

@@ -6,8 +6,6 @@
 namespace nephroid {
 namespace {
 
-/// Widest share of a light's extent over which one photon is spread: more, and the light would look larger.
-constexpr float kMostShare = 0.5F;
 /// Least half-axis of a kernel times the cube root of the photons, pixels: half a pixel at 100 000.
 constexpr double kLeastRadius = 25.0;
 /// Up to so many photons per pixel of the picture, spreading takes more noise away than it adds blur.
@@ -17,31 +15,6 @@ constexpr float kFlatness = 0.3F;
 /// Kernels are sampled at this many points at least along their shortest radius, up to kMostSteps a pixel.
 constexpr float kLeastPoints = 1.5F;
 constexpr int kMostSteps = 4;
-
-/// A symmetric matrix of 2 × 2.
-struct Covariance {
-  float xx = 0.0F, xy = 0.0F, yy = 0.0F;
-  void add(vec2 v, float scale) { xx += scale * v.x * v.x, xy += scale * v.x * v.y, yy += scale * v.y * v.y; }
-  float trace() const { return xx + yy; }
-  float determinant() const { return xx * yy - xy * xy; }
-};
-
-struct Shares {
-  float place, direction;  ///< squared
-};
-
-/// Squared shares of the light's extent and of its directions whose product is the cell: those that together make the
-/// smallest kernel, that is, equal shares in it (of all a, b with a·b = c², p·a + d·b is least where both are equal).
-Shares chooseShares(float cell, float place_trace, float direction_trace) {
-  constexpr float kMost = kMostShare * kMostShare;
-  if (!(place_trace > 0.0F)) return {0.0F, std::min(cell, kMost)};
-  if (!(direction_trace > 0.0F)) return {std::min(cell, kMost), 0.0F};
-  const float place = std::sqrt(cell * direction_trace / place_trace);
-  if (place > kMost) return {kMost, std::min(cell / kMost, kMost)};
-  const float direction = cell / place;
-  if (direction > kMost) return {std::min(cell / kMost, kMost), kMost};
-  return {place, direction};
-}
 
 /// Does the pixel see the plane on which the photon ended?
 bool counts(const ReceiverView& view, const FootprintSplat& s, int x, int y) {
@@ -63,31 +36,18 @@ FootprintScale scaleFootprints(float overlap, std::uint32_t photons, std::uint64
 std::optional<FootprintSplat> makeFootprintSplat(const Footprint& footprint, const FootprintScale& scale,
                                                  const CameraModel& camera, const SurfacePoint& point, vec2 film) {
   if (!footprint.valid() || scale.cell <= 0.0F) return std::nullopt;
-  const FootprintAxes axes = footprint.axes();
-  Covariance place, direction;
-  for (int k = 0; k < 2; ++k) {
-    place.add(camera.filmOffset(point.position, axes.place[k]), 1.0F);
-    direction.add(camera.filmOffset(point.position, axes.direction[k]), 1.0F);
-  }
-  const float cell = std::min(scale.cell / footprint.probability(), 1.0F);
-  const bool both = footprint.hasPlace() && footprint.hasDirection();
-  const Shares shares = both ? chooseShares(cell, place.trace(), direction.trace())
-                             : Shares{std::min(cell, 0.25F), std::min(cell, 0.25F)};
-  Covariance c{shares.place * place.xx + shares.direction * direction.xx,
-               shares.place * place.xy + shares.direction * direction.xy,
-               shares.place * place.yy + shares.direction * direction.yy};
+  FootprintShape c = footprint.shapeOf(scale.cell, [&](vec3 axis) { return camera.filmOffset(point.position, axis); });
   const float floor = scale.least_radius_px * scale.least_radius_px;
   c.xx += floor, c.yy += floor;
   if (!std::isfinite(c.trace())) return std::nullopt;
-  // Half-axes from the eigenvalues.
-  const float middle = 0.5F * c.trace(), spread = std::sqrt(std::max(middle * middle - c.determinant(), 0.0F));
+  const float middle = 0.5F * c.trace(), spread = c.spread();
   const float shrink = std::min(1.0F, kMostFootprintRadius * kMostFootprintRadius / (middle + spread));
   c.xx *= shrink, c.xy *= shrink, c.yy *= shrink;
   const float determinant = c.determinant();
   if (!(determinant > 0.0F)) return std::nullopt;
   FootprintSplat s;
   s.film = film;
-  s.place_share = std::sqrt(shares.place * shrink), s.direction_share = std::sqrt(shares.direction * shrink);
+  s.place_share = std::sqrt(c.place * shrink), s.direction_share = std::sqrt(c.direction * shrink);
   s.reach = vec2(std::sqrt(c.xx), std::sqrt(c.yy));
   s.xx = c.yy / determinant, s.xy = -c.xy / determinant, s.yy = c.xx / determinant;
   const float shortest = std::sqrt(std::max((middle - spread) * shrink, 1e-6F));
@@ -96,10 +56,10 @@ std::optional<FootprintSplat> makeFootprintSplat(const Footprint& footprint, con
   s.normal = point.normal_geometric;
   s.plane = dot(point.normal_geometric, point.position);
   // On the receiver: as long as the kernel's axis is there.
+  const FootprintAxes axes = footprint.axes();
   float squared = 0.0F;
   for (int k = 0; k < 2; ++k)
-    squared +=
-        shares.place * dot(axes.place[k], axes.place[k]) + shares.direction * dot(axes.direction[k], axes.direction[k]);
+    squared += c.place * dot(axes.place[k], axes.place[k]) + c.direction * dot(axes.direction[k], axes.direction[k]);
   s.thickness = kFlatness * std::sqrt(squared * shrink) + 4.0F * point.position_error;
   return s;
 }

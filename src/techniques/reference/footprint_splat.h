@@ -23,6 +23,10 @@ struct FootprintScale {
   float cell = 0.0F;
   /// Ellipses are no narrower than this on the picture, pixels: what a fold has no width in.
   float least_radius_px = 0.0F;
+  /// As `cell`, of photons that are gathered where they ended (see gathered_photons.h). 0: they have no footprint.
+  float gathered_cell = 0.0F;
+
+  bool any() const { return cell > 0.0F || gathered_cell > 0.0F; }
 };
 
 /// For batch number `batch` (from 0) of a light that emits `photons` in each. Of N photons in all, one is spread over

@@ -50,9 +50,9 @@ LightPath::LightPath(const LightPathContext& context, const Emitter& emitter, co
       state_{Ray{photon.origin, photon.dir}, emitter.interior()},
       flux_(photon.flux),
       emitted_(photon.flux),
-      footprint_(context.spread.cell > 0.0F ? emitter.extentOf(photon) : EmissionExtent{}, photon.dir),
+      footprint_(context.spread.any() ? emitter.extentOf(photon) : EmissionExtent{}, photon.dir),
       share_(emitter.source() == context.world.lights.sourceOfEnvironment()) {
-  if (context.spread.cell <= 0.0F) footprint_.lose();
+  if (!context.spread.any()) footprint_.lose();
   depart();
 }
 
@@ -138,20 +138,24 @@ bool LightPath::scatter() {
     const bool first = stage_ == Stage::kSpecularChain;
     if (first) {
       ledger_->deposited += dvec3(rest);
-      if (!isLeft()) deposit(weighted, wo);
+      if (!isLeft()) deposit(bsdf, weighted, wo);
     } else if (deposits_again_) {
-      depositAgain(weighted);
+      depositAgain(weighted * bsdf.shadingCosineRatio(wo));
     }
     if (!isLeft() && (first ? context_->connect_caustics : context_->connect_indirect)) connectToCamera(bsdf, wo);
   }
   return continueWith(bsdf, specular_share, wo);
 }
 
-void LightPath::deposit(vec3 weighted, vec3 wo) {
+void LightPath::deposit(const Bsdf& bsdf, vec3 weighted, vec3 wo) {
   PhotonTally& tally = context_->tally;
-  if (context_->keep_caustic_deposits)
-    tally.caustic_deposits.push_back(
-        {encounter_.point.position, state_.ray.dir, weighted, encounter_.point.normal_geometric});
+  if (context_->keep_caustic_deposits) {
+    GridPhoton& photon = tally.caustic_deposits.emplace_back(GridPhoton{encounter_.point.position, state_.ray.dir,
+                                                                        weighted * bsdf.shadingCosineRatio(wo),
+                                                                        encounter_.point.normal_geometric});
+    if (footprint_.valid() && context_->spread.gathered_cell > 0.0F)
+      photon.axes = footprint_.halfAxesOn(photon.normal, context_->spread.gathered_cell);
+  }
   if (!trail_.carried()) return;
   tally.vcm_photons.push_back(trail_.photonAt(encounter_.point, wo, weighted));
   if (trail_.connects()) tally.vcm_ends.push_back(trail_.vertexAt(surface(), wo, weighted, EventClass::kDiffuse));

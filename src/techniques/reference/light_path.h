@@ -91,7 +91,7 @@ class LightPath {
   bool leave(const BsdfSample& s);
   bool survives();
   bool staysUseful(float kept);
-  void deposit(vec3 weighted, vec3 wo);
+  void deposit(const Bsdf& bsdf, vec3 weighted, vec3 wo);
   void depositAgain(vec3 weighted);
   /// A caustic that others make.
   bool isLeft() const { return context_->leave_walked && stage_ == Stage::kSpecularChain && share_.isWalked(); }

@@ -114,13 +114,16 @@ void LightTracer::emit(std::size_t emitter, std::uint32_t begin, std::uint32_t e
 void LightTracer::trace(std::size_t emitter, const PhotonWave& wave, std::uint32_t begin, std::uint32_t end,
                         const FootprintScale& spread, PhotonTally& tally) const {
   CameraConnections connections(world_.walker, view_, tally);
+  FootprintScale kept = spread;
+  if (!view_) kept.cell = 0.0F;
+  if (!keep_deposits_) kept.gathered_cell = 0.0F;
   const LightPathContext context{.world = world_,
                                  .is_target = is_target_,
                                  .connect_indirect = connect_.indirect,
                                  .connect_caustics = connect_.caustic,
                                  .keep_caustic_deposits = keep_deposits_,
                                  .keep_indirect_deposits = keep_indirect_deposits_,
-                                 .spread = view_ ? spread : FootprintScale{},
+                                 .spread = kept,
                                  .tally = tally,
                                  .connections = connections,
                                  .vcm = vcm_,

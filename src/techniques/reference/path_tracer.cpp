@@ -154,7 +154,7 @@ class EyePath {
     Gathered found;
     const bool seen_directly = strand_.events.count() == 0;
     map.visitKernels(point.position, point.normal_geometric, [&](const KernelPhoton& photon, float squared_radius) {
-      const vec3 wi = -photon.dir, arriving = photon.flux * bsdf.shadingCosineRatio(wi);
+      const vec3 wi = -photon.dir, arriving = photon.flux;
       const vec3 reflected = arriving * bsdf.evaluate(EventClass::kDiffuse, wi, Transport::kRadiance).f;
       found.radiance += photon.weightAt(squared_radius) * reflected;
       found.by_half += photon.halfWeightAt(squared_radius) * reflected;

@@ -12,6 +12,10 @@ namespace {
 constexpr std::uint32_t kChunkPhotons = 4096;
 /// Bands of the picture into which splats are summed in parallel.
 constexpr int kSplatBands = 16;
+/// Photons of one batch that overlap where they are gathered, were the light's way straight. Of `seabed` (160 × 120,
+/// 64 batches of 131 000) the squares of blur and noise are 0.020 and 0.0014 with discs about 15, 0.014 and 0.0008 with
+/// 8 that overlap, 0.005 and 0.0012 with 4.
+constexpr float kGatheredOverlap = 4.0F;
 
 }  // namespace
 
@@ -64,8 +68,9 @@ bool PhotonBatch::follow(std::uint64_t batch, const std::function<bool()>& stopp
   const std::size_t first = chunks_.size();
   for (std::size_t e = 0; e < waves_.size(); ++e) addChunks(e, waves_[e].size());
   return runChunks(first, stopped, [&](Chunk& c) {
-    const FootprintScale spread =
-        view_ ? tracer_.scaleFootprints(overlaps_[c.emitter], shares_[c.emitter], batch) : FootprintScale{};
+    FootprintScale spread;
+    if (view_) spread = tracer_.scaleFootprints(overlaps_[c.emitter], shares_[c.emitter], batch);
+    spread.gathered_cell = kGatheredOverlap / static_cast<float>(shares_[c.emitter]);
     tracer_.trace(c.emitter, waves_[c.emitter], c.begin, c.end, spread, c.tally);
     sortByBand(c);
     sortFootprints(c);
