@@ -15,7 +15,7 @@ constexpr std::size_t kMostGrids = 8;
 /// For rounding: a cell that a disc only just misses may be entered, one that it meets must be.
 constexpr float kSlack = 1.001F;
 /// Half-axes of footprints, in radii of a disc: a fold has no width, and far from it a straight line is a poor guess.
-constexpr float kNarrowest = 0.3F, kWidest = 4.0F;
+constexpr float kNarrowest = 0.3F, kWidest = 2.0F;
 
 /// Of a disc of the same area.
 float radiusOf(const KernelPhoton& photon) { return 1.0F / std::sqrt(photon.inverse_axes); }

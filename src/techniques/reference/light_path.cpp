@@ -149,15 +149,15 @@ bool LightPath::scatter() {
 
 void LightPath::deposit(const Bsdf& bsdf, vec3 weighted, vec3 wo) {
   PhotonTally& tally = context_->tally;
+  const vec3 counted = weighted * bsdf.shadingCosineRatio(wo);
   if (context_->keep_caustic_deposits) {
-    GridPhoton& photon = tally.caustic_deposits.emplace_back(GridPhoton{encounter_.point.position, state_.ray.dir,
-                                                                        weighted * bsdf.shadingCosineRatio(wo),
-                                                                        encounter_.point.normal_geometric});
+    GridPhoton& photon = tally.caustic_deposits.emplace_back(
+        GridPhoton{encounter_.point.position, state_.ray.dir, counted, encounter_.point.normal_geometric});
     if (footprint_.valid() && context_->spread.gathered_cell > 0.0F)
       photon.axes = footprint_.halfAxesOn(photon.normal, context_->spread.gathered_cell);
   }
   if (!trail_.carried()) return;
-  tally.vcm_photons.push_back(trail_.photonAt(encounter_.point, wo, weighted));
+  tally.vcm_photons.push_back(trail_.photonAt(encounter_.point, wo, counted));
   if (trail_.connects()) tally.vcm_ends.push_back(trail_.vertexAt(surface(), wo, weighted, EventClass::kDiffuse));
 }
 

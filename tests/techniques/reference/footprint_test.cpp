@@ -42,6 +42,22 @@ class FootprintTest : public testing::Test {
   std::unique_ptr<ReceiverView> view_;
 };
 
+TEST(Footprint, OnASurfaceIsTheCellOfABeamOverTheCosine) {
+  // A beam one metre wide straight down on a slope of 3 to 4.
+  Footprint footprint({.place = 1.0F, .direction = 0.0F}, vec3(0, -1, 0));
+  SurfacePoint point;
+  point.normal_geometric = vec3(0.0F, 0.8F, -0.6F);
+  footprint.transfer(vec3(0, -1, 0), 2.0F, point);
+  constexpr float kCell = 1e-4F;
+  const auto [longer, shorter] = footprint.halfAxesOn(point.normal_geometric, kCell);
+  EXPECT_NEAR(kPi * length(longer) * length(shorter), kCell / 0.8F, 1e-3F * kCell);
+  EXPECT_NEAR(length(longer) / length(shorter), 1.0F / 0.8F, 1e-3F);
+  EXPECT_NEAR(std::abs(dot(longer, vec3(0.0F, 0.6F, 0.8F))), length(longer), 1e-3F * length(longer));
+  EXPECT_NEAR(dot(shorter, point.normal_geometric), 0.0F, 1e-6F);
+  footprint.choose(0.25F);
+  EXPECT_NEAR(length(footprint.halfAxesOn(point.normal_geometric, kCell)[0]), 2.0F * length(longer), 1e-5F);
+}
+
 /// Cells so small that the ball's way with light is straight over them.
 constexpr FootprintScale kSmallCell{1e-9F, 0.0F};
 

@@ -119,7 +119,7 @@ class VcmEyePath {
     const BsdfValue value = bsdf.evaluate(EventClass::kDiffuse, wi, Transport::kRadiance);
     const float reverse = VcmSurface::densityOf(bsdf, EventClass::kDiffuse, value.pdf);
     const float weight = weighMerge(photon.half, arrived_, reverse, techniques_.merging());
-    const vec3 incident = photon.flux * (bsdf.shadingCosineRatio(wi) * weight);
+    const vec3 incident = photon.flux * weight;
     sum.radiance += incident * value.f;
     if (dot(offset, offset) <= 0.5F * radius * radius) sum.inner += incident * value.f;
     if (isOnEyeSide(surface, wi)) sum.irradiance += incident;

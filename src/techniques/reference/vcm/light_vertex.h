@@ -12,7 +12,7 @@ namespace nephroid {
 struct VcmPhoton {
   vec3 position;         ///< world, m
   vec3 dir;              ///< unit, along the travel of light
-  vec3 flux;             ///< W; in a tally × emitted count
+  vec3 flux;             ///< W, as it counts on the shaded surface; in a tally × emitted count
   VcmPartial half;       ///< on arrival
   std::uint32_t events;  ///< before it ended here
 };
