@@ -6,10 +6,11 @@
 // What is summed is the layer, not its parts: paths of one pass (photons of one batch) are shared by all layers, so
 // that the variance of `beauty` is not the sum of theirs.
 // Low-discrepancy points err less than the spread of short runs of them says. So batches grow with the render, an
-// eighth to a quarter of it each, and how large errors are on the whole is what the last four to eight of them say (a
-// generation, see below); all batches together say how errors lie within a tile, for which a few are too few.
-// Limits: it knows noise alone, no kernel's blur, and nothing of light that no path has found yet. It is what a mean
-// over an eighth to a quarter of the points would lead one to expect: rather too large where the integrand is smooth.
+// eighth to a quarter of it each, and how large the error of the picture is, is what the last four to eight of them say
+// (two generations, see below). For single pixels those are too few: their standard errors are by all batches. Limits:
+// it knows noise alone, no kernel's blur, and nothing of light that no path has found yet. It is what runs of an eighth
+// to a quarter of the points say: rather too large where the integrand is smooth, and standard errors of pixels are
+// more so.
 #pragma once
 
 #include <cstdint>
@@ -96,8 +97,8 @@ class ErrorEstimate {
   Image standardError(std::string_view layer, std::span<const std::uint64_t> passes_from_eye,
                       std::uint64_t batches_from_lights) const;
 
-  /// mean(σ² / (I² + (0.01·mean I)²)) over pixels and channels: relMSE (DESIGN §6) with the picture in the place of the
-  /// reference, at the last closed batches. Infinite while a direction has but one batch.
+  /// mean(σ² / (I² + (0.01·mean I)²)) over pixels and channels, σ² by the last generations: relMSE (DESIGN §6) with the
+  /// picture in the place of the reference, at the last closed batches. Infinite while a direction has but one batch.
   RelativeError relMse(std::string_view layer) const;
   /// A layer and its estimate.
   struct OfLayer {
