@@ -1,7 +1,7 @@
 // Photons, each spread over an ellipse of the surface on which it ended, found by place.
 //
-// The ellipse is the photon's footprint where it has one, which neighbours fill evenly: those of a caustic overlap with
-// little noise, however its sheets lie over each other. Else it is a disc.
+// The ellipse is the photon's footprint where it has one (photon differentials, [schjoth-2007]), which neighbours fill
+// evenly: those of a caustic overlap with little noise, however its sheets lie over each other. Else it is a disc.
 // Each is entered in every cell of a grid that it meets, so that a place looks into one cell. Ellipses whose areas are
 // within a factor of four share a grid, whose cells are as wide as the radius of a disc like the largest. Built in the
 // order of the photons, so that sums over a place do not depend on threads.

@@ -85,7 +85,7 @@ TEST(KernelMap, FindsExactlyTheKernelsThatHoldAPoint) {
     map.visitKernels(at, normal, [&](const KernelPhoton& photon, float squared_radius) {
       ++found;
       const vec3 offset = photon.position - at, along = offset - dot(offset, kNormal) * kNormal;
-      EXPECT_NEAR(squared_radius, dot(along, along) * photon.inverse_axes, 1e-5);
+      EXPECT_NEAR(squared_radius, dot(along, along) * photon.inverse_axes, 1e-6);
     });
     EXPECT_EQ(found, expected);
     all += found;

@@ -85,8 +85,8 @@ ErrorEstimate::ErrorEstimate(const Film& film, const std::vector<std::string>& l
 }
 
 void ErrorEstimate::Direction::close(std::uint64_t gained) {
-  ++batches, passes += gained;
-  freedom = generation_batches++;
+  ++batches, ++generation_batches;
+  passes += gained;
 }
 
 bool ErrorEstimate::Direction::endsGeneration() const {
@@ -94,9 +94,9 @@ bool ErrorEstimate::Direction::endsGeneration() const {
 }
 
 void ErrorEstimate::Direction::beginGeneration() {
-  previous_freedom = freedom;
+  previous_batches = generation_batches;
+  generation_batches = 0;
   generation_begin = passes;
-  freedom = generation_batches = 0;
 }
 
 template <class Visit>

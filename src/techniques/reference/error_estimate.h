@@ -5,12 +5,14 @@
 // over n_b passes, S = Σ S_b and N = Σ n_b, the variance of the mean is (Σ S_b²/n_b − S²/N) / ((B − 1) N).
 // What is summed is the layer, not its parts: paths of one pass (photons of one batch) are shared by all layers, so
 // that the variance of `beauty` is not the sum of theirs.
+//
 // Low-discrepancy points err less than the spread of short runs of them says. So batches grow with the render, an
 // eighth to a quarter of it each, and how large the error of the picture is, is what the last four to eight of them say
-// (two generations, see below). For single pixels those are too few: their standard errors are by all batches. Limits:
-// it knows noise alone, no kernel's blur, and nothing of light that no path has found yet. It is what runs of an eighth
-// to a quarter of the points say: rather too large where the integrand is smooth, and standard errors of pixels are
-// more so.
+// (two generations, see below). For single pixels those are too few: their standard errors are by all batches.
+//
+// Limits: it knows noise alone, no kernel's blur, and nothing of light that no path has found yet. It is what runs of
+// an eighth to a quarter of the points say: rather too large where the integrand is smooth, and standard errors of
+// pixels are more so.
 #pragma once
 
 #include <cstdint>
@@ -126,13 +128,16 @@ class ErrorEstimate {
  private:
   /// How far a direction has come. Generations double the passes: each is of four batches or more.
   struct Direction {
-    std::uint64_t batches = 0, passes = 0;            ///< closed
-    std::uint64_t generation_begin = 0;               ///< passes before this generation
-    std::uint64_t freedom = 0, previous_freedom = 0;  ///< batches less one, of this generation and the one before
-    std::uint64_t generation_batches = 0;
+    std::uint64_t batches = 0, passes = 0;                       ///< closed
+    std::uint64_t generation_batches = 0, previous_batches = 0;  ///< of this generation and of the one before
+    std::uint64_t generation_begin = 0;                          ///< passes before this generation
 
     std::uint64_t ofGeneration() const { return passes - generation_begin; }
-    double recentFreedom() const { return static_cast<double>(freedom + previous_freedom); }
+    /// A mean of each generation is known by one of its batches.
+    double recentFreedom() const {
+      const auto freedomOf = [](std::uint64_t n) { return n > 0 ? static_cast<double>(n - 1) : 0.0; };
+      return freedomOf(generation_batches) + freedomOf(previous_batches);
+    }
     void close(std::uint64_t gained);
     bool endsGeneration() const;
     void beginGeneration();

@@ -1,8 +1,9 @@
 // Photons that paths from the eye gather: those of the latest batch, under kernels that shrink from batch to batch.
 //
 // Each batch is blurred by its kernels, but the mean over batches converges (Knaus & Zwicker 2011). Caustics, and what
-// they light in turn, have a map each: a caustic is narrow and bright, what it lights is spread evenly. Within a map
-// kernels are wide where photons are sparse (see kernel_radii.h), so that dim places are as smooth as bright ones.
+// they light in turn, have a map each: a caustic is narrow and bright, what it lights is spread evenly. Kernels of
+// caustics are the photons' footprints (see footprint.h), those of what they light discs, wide where photons are sparse
+// (see kernel_radii.h), so that dim places are as smooth as bright ones.
 #pragma once
 
 #include <cstdint>

@@ -154,13 +154,13 @@ class EyePath {
     Gathered found;
     const bool seen_directly = strand_.events.count() == 0;
     map.visitKernels(point.position, point.normal_geometric, [&](const KernelPhoton& photon, float squared_radius) {
-      const vec3 wi = -photon.dir, arriving = photon.flux;
-      const vec3 reflected = arriving * bsdf.evaluate(EventClass::kDiffuse, wi, Transport::kRadiance).f;
+      const vec3 wi = -photon.dir;
+      const vec3 reflected = photon.flux * bsdf.evaluate(EventClass::kDiffuse, wi, Transport::kRadiance).f;
       found.radiance += photon.weightAt(squared_radius) * reflected;
       found.by_half += photon.halfWeightAt(squared_radius) * reflected;
       // As for light that is connected to the camera: on the side that the eye sees.
       if (seen_directly && dot(wi, point.normal_geometric) * dot(strand_.state.ray.dir, point.normal_geometric) < 0.0F)
-        found.irradiance += photon.weightAt(squared_radius) * arriving;
+        found.irradiance += photon.weightAt(squared_radius) * photon.flux;
     });
     return found;
   }
