@@ -78,6 +78,8 @@ class Bsdf {
   /// on the true surface into flux incident on the shaded one (Veach 1997, §5.3.2).
   float shadingCosineRatio(vec3 w) const;
   vec3 normal() const { return normal_; }
+  /// Is `dir` behind the surface, as seen from wo?
+  bool transmitsTo(vec3 dir) const { return !sameSide(dir); }
 
  private:
   SurfaceOptics surface() const { return makeSurfaceOptics(material_, ior_from_, ior_to_, average_fresnel_); }

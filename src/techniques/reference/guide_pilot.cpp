@@ -180,7 +180,7 @@ ParamSpec makeGuidingParam() {
       "",
       "share of the photons of suns, points and spots that go where a pilot found that they lessen the error of "
       "caustics most; the others are emitted evenly. Only for estimators light and footprint, where caustics are all "
-      "that photons are asked for, and there are enough of them",
+      "that photons are asked for, and there are enough of them. 0: paths from the eye are not guided either",
       {}};
 }
 

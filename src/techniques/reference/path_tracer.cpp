@@ -4,6 +4,8 @@
 #include <cmath>
 #include <vector>
 
+#include "techniques/reference/guided_bsdf.h"
+
 namespace nephroid {
 namespace {
 
@@ -25,6 +27,9 @@ constexpr std::uint32_t kSplitSeedOffset = 0x73747261U;
 constexpr std::uint32_t kDiffuseStrands = 4;
 /// They draw their numbers from one sequence, as neighbours in it, so that they are spread evenly.
 constexpr std::uint32_t kDiffuseSeedOffset = 0x64696666U;
+/// Where directions were learned, half of them are drawn by those, spread evenly on their own.
+constexpr std::uint32_t kGuidedStrands = kDiffuseStrands / 2;
+constexpr std::uint32_t kGuidedSeedOffset = 0x67756964U;
 
 float powerHeuristic(float pdf, float other) {
   if (!std::isfinite(pdf)) return 1.0F;
@@ -41,9 +46,12 @@ struct Strand {
   vec3 throughput{1.0F};             ///< without the weight of its wavelengths
   vec3 irradiance_throughput{0.0F};  ///< the same from the first diffuse event on, with cosine instead of BSDF there
   float split_share = 1.0F;          ///< of the path, after all splits
+  float rarity = 1.0F;               ///< density of a guided way by the BSDF alone, over that with which it was drawn
   vec3 vertex{0.0F};                 ///< of the last event, or the eye
   bool previous_is_delta = true;
   float previous_pdf = 0.0F;
+  std::int64_t lesson = -1;   ///< that tells of the strand; −1: none
+  float lesson_scale = 0.0F;  ///< from radiance in the pixel to what came by the way of the lesson
 };
 
 /// One path on its way from the eye, with all of its strands.
@@ -51,7 +59,8 @@ class EyePath {
  public:
   EyePath(const ReferenceWorld& world, const LayerNeeds& needs, const GatheredPhotons* photons,
           const PhotonPaths& gathered, const PhotonPaths& left, const Manifold* manifold,
-          const Continuation& continuation, Film& film, PathCounters& counters, std::size_t pixel, std::uint32_t sample)
+          const Continuation& continuation, const DirectionGuide* guide, Film& film, PathCounters& counters,
+          std::size_t pixel, std::uint32_t sample)
       : world_(world),
         needs_(needs),
         photons_(photons),
@@ -59,6 +68,7 @@ class EyePath {
         left_(left),
         manifold_(manifold),
         continuation_(continuation),
+        guide_(guide),
         film_(film),
         counters_(counters),
         pixel_(pixel),
@@ -95,6 +105,8 @@ class EyePath {
     const Ray whole = strand_.state.ray;
     world_.walker.advance(strand_.state, strand_.sampler, encounter_, strand_.events.count() == 0);
     countRays(encounter_.rays);
+    if (DirectionLesson* lesson = lessonOfStrand(); lesson && lesson->distance == 0.0F)
+      lesson->distance = encounter_.distance;
     if (encounter_.overflow) return false;
     world_.lights.visitSpheres(strand_.vertex, whole, encounter_.distance,
                                [&](const LightSet::Met& met) { addMet(met); });
@@ -111,6 +123,7 @@ class EyePath {
 
   void countRays(std::uint64_t rays) {
     counters_.rays += rays;
+    if (DirectionLesson* lesson = lessonOfStrand()) lesson->rays += static_cast<float>(rays);
     if (counters_.parts) counters_.parts->rays[PathPart::of(strand_.events)] += static_cast<double>(rays);
   }
 
@@ -128,6 +141,8 @@ class EyePath {
     const float ior_to = iorOf(encounter_.boundary.to, strand_.state.wavelength_nm);
     const Bsdf bsdf(*encounter_.material, encounter_.point, wo, ior_from, ior_to, world_.options.specular_alpha);
     if (!bsdf.isClear()) settleWavelength(strand_.state, encounter_);
+    lobe_ = guide_ && bsdf.hasDiffuse() && strand_.events.diffuseCount() == 0 ? guide_->at(encounter_.point.position)
+                                                                              : nullptr;
     for (const EventClass c : {EventClass::kSpecular, EventClass::kDiffuse})
       if (bsdf.isEvaluable(c) && isWanted(strand_.events.with(c))) connectToLight(bsdf, c);
     if (photons_ && bsdf.hasDiffuse()) gather(bsdf);
@@ -232,7 +247,8 @@ class EyePath {
     countRays(rays);
     if (maxComponent(visible) <= 0.0F) return;
     const float p_class = c == EventClass::kSpecular ? bsdf.specularProbability() : 1.0F - bsdf.specularProbability();
-    const float weight = light->delta ? 1.0F : powerHeuristic(light->pdf, p_class * value.pdf);
+    const float pdf = light->delta || c == EventClass::kSpecular ? value.pdf : guided(bsdf).pdf(light->dir, value.pdf);
+    const float weight = light->delta ? 1.0F : powerHeuristic(light->pdf, p_class * pdf);
     const vec3 incident = visible * light->radiance * (cos_theta * weight / light->pdf);
     const PathClass path = strand_.events.with(c);
     const vec3 irradiance = path.count() == 1 ? incident : strand_.irradiance_throughput * value.f * incident;
@@ -252,22 +268,44 @@ class EyePath {
     const bool specular = p_specular > 0.0F && strand_.sampler.next1D() < p_specular;
     if (!specular && strand_.events.count() == 0 && needs_.beyondDiffuse())
       return followDiffuseStrands(bsdf, 1.0F - p_specular);
-    const EventClass c = specular ? EventClass::kSpecular : EventClass::kDiffuse;
-    return sampleWay(bsdf, c, specular ? p_specular : 1.0F - p_specular, 1.0F);
+    return specular ? followSpecular(bsdf, p_specular) : followDiffuse(bsdf, 1.0F - p_specular, 1.0F, WayBy::kChance);
+  }
+  bool followSpecular(const Bsdf& bsdf, float p_class) {
+    const vec2 u = strand_.sampler.next2D();
+    const auto s = bsdf.sample(EventClass::kSpecular, u, strand_.sampler.next1D(), Transport::kRadiance);
+    return s && follow(bsdf, EventClass::kSpecular, *s, p_class, true);
   }
   /// @param share  of the path that the strand is
-  bool sampleWay(const Bsdf& bsdf, EventClass c, float p_class, float share) {
-    if (c == EventClass::kDiffuse) {
-      const float q = continuation_.into(strand_.events.with(c));
-      if (q < 1.0F && strand_.sampler.next1D() >= q) return false;
-      share /= q;
-    }
+  bool followDiffuse(const Bsdf& bsdf, float p_class, float share, WayBy by) {
+    const float q = continuation_.into(strand_.events.with(EventClass::kDiffuse));
+    if (q < 1.0F && strand_.sampler.next1D() >= q) return false;
+    share /= q;
     const vec2 u = strand_.sampler.next2D();
-    auto s = bsdf.sample(c, u, strand_.sampler.next1D(), Transport::kRadiance);
-    if (!s) return false;
-    s->weight *= share;
+    auto way = guided(bsdf).sample(u, strand_.sampler.next1D(), by);
+    if (!way) return false;
+    if (counters_.lessons && strand_.events.diffuseCount() == 0 && !way->sample.delta)
+      beginLesson(*way, p_class / share);
+    if (lobe_ && way->pdf_bsdf > 0.0F) strand_.rarity *= way->pdf_bsdf / way->sample.pdf;
+    way->sample.weight *= share;
     strand_.split_share *= share;
-    return follow(bsdf, c, *s, p_class, true);
+    return follow(bsdf, EventClass::kDiffuse, way->sample, p_class, true);
+  }
+  /// Of the surface met last.
+  GuidedBsdf guided(const Bsdf& bsdf) const { return {bsdf, lobe_, encounter_.point.position}; }
+
+  /// @param odds  probability of the class over the strand's share
+  void beginLesson(const GuidedBsdf::Way& way, float odds) {
+    const float carried = luminance(strand_.throughput * strand_.state.hero.weight);
+    if (!(carried > 0.0F)) return;
+    strand_.lesson = static_cast<std::int64_t>(counters_.lessons->size());
+    strand_.lesson_scale = odds * way.sample.pdf / carried;
+    counters_.lessons->push_back({.position = encounter_.point.position,
+                                  .dir = way.sample.dir,
+                                  .pdf = way.sample.pdf,
+                                  .pdf_bsdf = way.pdf_bsdf});
+  }
+  DirectionLesson* lessonOfStrand() const {
+    return strand_.lesson >= 0 ? &(*counters_.lessons)[static_cast<std::size_t>(strand_.lesson)] : nullptr;
   }
 
   /// Where a diffuse surface is seen, the path becomes several strands, all of which wait. @return false
@@ -275,9 +313,14 @@ class EyePath {
     const Strand before = strand_;
     for (std::uint32_t i = 0; i < kDiffuseStrands; ++i) {
       strand_ = before;
-      strand_.sampler = Sampler(world_.options.seed + kDiffuseSeedOffset, static_cast<std::uint32_t>(pixel_),
-                                sample_ * kDiffuseStrands + i);
-      if (sampleWay(bsdf, EventClass::kDiffuse, p_class, 1.0F / kDiffuseStrands)) waiting_.push_back(strand_);
+      const bool by_guide = lobe_ && i < kGuidedStrands;
+      const std::uint32_t first = lobe_ && !by_guide ? kGuidedStrands : 0,
+                          strands = lobe_ ? kGuidedStrands : kDiffuseStrands;
+      const std::uint32_t seed_offset = by_guide ? kGuidedSeedOffset : kDiffuseSeedOffset;
+      strand_.sampler =
+          Sampler(world_.options.seed + seed_offset, static_cast<std::uint32_t>(pixel_), sample_ * strands + i - first);
+      if (followDiffuse(bsdf, p_class, 1.0F / kDiffuseStrands, by_guide ? WayBy::kGuide : WayBy::kBsdf))
+        waiting_.push_back(strand_);
     }
     return false;
   }
@@ -346,14 +389,14 @@ class EyePath {
   }
 
   /// Of what a path could bring when it began, the strand's share. Radiance over the squared index is what refraction
-  /// keeps.
+  /// keeps; that a guide sent many this way is no loss.
   float share() const {
     // With other wavelengths aboard, chance must not depend on which of them is the hero.
     const HeroWavelengths& hero = strand_.state.hero;
     const float ior = iorOf(strand_.state.interior.medium(), hero.open ? 0.0F : strand_.state.wavelength_nm);
     const float kept =
         std::max(maxComponent(glm::abs(strand_.throughput)), maxComponent(glm::abs(strand_.irradiance_throughput)));
-    return kept * (hero.open ? hero.meanOverHero() : 1.0F) * ior * ior / (eye_ior_ * eye_ior_);
+    return kept / strand_.rarity * (hero.open ? hero.meanOverHero() : 1.0F) * ior * ior / (eye_ior_ * eye_ior_);
   }
 
   bool survives() {
@@ -381,6 +424,7 @@ class EyePath {
       return;
     }
     if (counters_.parts) counters_.parts->squares[PathPart::of(strand_.events)] += dot(radiance, radiance);
+    if (DirectionLesson* lesson = lessonOfStrand()) lesson->value += strand_.lesson_scale * luminance(radiance);
     const auto addTo = [&](FilmPlane& plane, vec3 value) {
       if (plane.active()) plane.add(pixel_, value);
     };
@@ -413,6 +457,7 @@ class EyePath {
   const PhotonPaths& left_;  ///< gathered here, or made elsewhere
   const Manifold* manifold_;
   const Continuation& continuation_;
+  const DirectionGuide* guide_;
   Film& film_;
   PathCounters& counters_;
   std::size_t pixel_;
@@ -422,14 +467,16 @@ class EyePath {
   std::vector<Strand> waiting_;  ///< where the path became several
   std::uint32_t split_count_ = 0;
   Encounter encounter_;
-  float eye_ior_ = 1.0F;  ///< of the medium around the eye
+  const DirectionLobe* lobe_ = nullptr;  ///< of the surface met last, if ways on from there are guided
+  float eye_ior_ = 1.0F;                 ///< of the medium around the eye
 };
 
 }  // namespace
 
 void PathTracer::tracePath(int x, int y, std::uint32_t sample, Film& film, PathCounters& counters) const {
   const auto pixel = static_cast<std::size_t>(y) * film.width + x;
-  EyePath path(world_, needs_, photons_, gathered_, left_, manifold_, continuation_, film, counters, pixel, sample);
+  EyePath path(world_, needs_, photons_, gathered_, left_, manifold_, continuation_, guide_, film, counters, pixel,
+               sample);
   path.trace(vec2(static_cast<float>(x), static_cast<float>(y)));
 }
 

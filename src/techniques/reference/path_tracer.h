@@ -13,8 +13,10 @@
 #pragma once
 
 #include <cstdint>
+#include <vector>
 
 #include "techniques/reference/continuation.h"
+#include "techniques/reference/direction_guide.h"
 #include "techniques/reference/film.h"
 #include "techniques/reference/gathered_photons.h"
 #include "techniques/reference/manifold/manifold.h"
@@ -26,7 +28,9 @@ namespace nephroid {
 struct PathCounters {
   std::uint64_t rays = 0;
   std::uint64_t not_finite = 0;
-  PartTally* parts = nullptr;  ///< filled if there
+  // Filled if there:
+  PartTally* parts = nullptr;
+  std::vector<DirectionLesson>* lessons = nullptr;  ///< one for each way on from a path's first diffuse surface
 };
 
 class PathTracer {
@@ -44,6 +48,9 @@ class PathTracer {
   void walkFrom(const Manifold* manifold) { manifold_ = manifold; }
   /// From now on paths go on by this.
   void continueBy(const Continuation& continuation) { continuation_ = continuation; }
+  /// From now on paths draw their ways on from the first diffuse surface by this as well, which must outlive them and
+  /// may be none.
+  void guideBy(const DirectionGuide* guide) { guide_ = guide; }
   /// One path through pixel (x, y), added to the film. Safe from any thread as long as no two share a pixel.
   void tracePath(int x, int y, std::uint32_t sample, Film& film, PathCounters& counters) const;
 
@@ -54,6 +61,7 @@ class PathTracer {
   PhotonPaths left_, gathered_;
   const Manifold* manifold_ = nullptr;
   Continuation continuation_;
+  const DirectionGuide* guide_ = nullptr;
 };
 
 }  // namespace nephroid

@@ -8,21 +8,19 @@
 namespace nephroid {
 namespace {
 
-/// Each is a place where the light may be another.
-constexpr double kPixels = 384.0;
 constexpr std::uint32_t kPilotSeed = 0x9110700DU;
 
-CameraModel smallCamera(const Camera& camera, int width, int height) {
-  const double scale = std::sqrt(kPixels / (static_cast<double>(width) * height));
+CameraModel smallCamera(const Camera& camera, int width, int height, double pixels) {
+  const double scale = std::sqrt(pixels / (static_cast<double>(width) * height));
   const auto scaled = [&](int side) { return std::max(1, static_cast<int>(std::lround(side * scale))); };
   return {camera, scaled(width), scaled(height)};
 }
 
 }  // namespace
 
-PilotView::PilotView(ReferenceWorld& world, const Camera& camera, int width, int height)
+PilotView::PilotView(ReferenceWorld& world, const Camera& camera, int width, int height, double pixels)
     : world_(world), camera_(world.camera_model), seed_(world.options.seed) {
-  world.camera_model = smallCamera(camera, width, height);
+  world.camera_model = smallCamera(camera, width, height, pixels);
   world.options.seed = kPilotSeed;
 }
 

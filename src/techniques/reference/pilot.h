@@ -12,11 +12,14 @@
 
 namespace nephroid {
 
+/// Each is a place where the light may be another.
+inline constexpr double kPilotPixels = 384.0;
+
 /// The world as a small picture of a few hundred pixels sees it, with other random numbers, while this lives.
 class PilotView {
  public:
-  /// @param width,height  of the picture that is meant
-  PilotView(ReferenceWorld& world, const Camera& camera, int width, int height);
+  /// @param width,height  of the picture that is meant  @param pixels  of the small one, about
+  PilotView(ReferenceWorld& world, const Camera& camera, int width, int height, double pixels = kPilotPixels);
   ~PilotView();
   PilotView(const PilotView&) = delete;
   PilotView& operator=(const PilotView&) = delete;

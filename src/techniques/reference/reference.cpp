@@ -17,6 +17,7 @@
 #include "techniques/layers.h"
 #include "techniques/reference/checkpoint.h"
 #include "techniques/reference/continuation_pilot.h"
+#include "techniques/reference/direction_pilot.h"
 #include "techniques/reference/estimator.h"
 #include "techniques/reference/geometry_layers.h"
 #include "techniques/reference/guide_pilot.h"
@@ -101,6 +102,13 @@ class ReferenceRender {
       continuation_ = measureContinuation(world_, camera, settings.width, settings.height, path_needs_,
                                           {from_photons, connect, gathered});
     path_tracer_.continueBy(continuation_);
+    if (paysToLearnDirections()) {
+      PathTracer learner(world_, path_needs_);
+      learner.leaveToPhotons(from_photons);
+      learner.continueBy(continuation_);
+      directions_ = learnDirections(world_, camera, settings.width, settings.height, path_needs_, learner);
+      path_tracer_.guideBy(directions_.empty() ? nullptr : &directions_);
+    }
     addStage("build", secondsSince(start_));
   }
 
@@ -144,6 +152,14 @@ class ReferenceRender {
     constexpr std::uint64_t kFewestPaths = 1'000'000;
     const std::uint64_t pixels = passes_.tiles().pixels();
     return !vcm_ && needs_.beauty && samples_budget_ > kFewestPaths / pixels;
+  }
+
+  /// The pilot takes 128 000 paths, and 384 000 where it finds that guiding pays.
+  bool paysToLearnDirections() const {
+    constexpr std::uint64_t kFewestPaths = 6'000'000;
+    const std::uint64_t pixels = passes_.tiles().pixels();
+    const bool wanted = settings_.params.getFloat("guiding") > 0.0F;
+    return wanted && !vcm_ && needs_.beauty && path_needs_.beyondDiffuse() && samples_budget_ > kFewestPaths / pixels;
   }
 
   void walkToLights() {
@@ -460,6 +476,9 @@ class ReferenceRender {
       result.notes.push_back(
           fmt::format("{:.0f} % of the paths go on from surfaces that they met by mirrors or glass: more bring little",
                       100.0F * into));
+    if (!directions_.empty())
+      result.notes.emplace_back(
+          "paths go on from diffuse surfaces towards what light came from in a pilot: half of them, where that pays");
     for (const GuidedLight& light : guided_)
       result.notes.push_back(fmt::format("photons of '{}' guided: {:.0f} % of them reach the picture, {:.0f} % if even",
                                          light.name, 100.0 * light.seen_guided, 100.0 * light.seen_even));
@@ -505,6 +524,7 @@ class ReferenceRender {
   EstimatorChoice choice_;
   LayerNeeds path_needs_;  ///< of `path_tracer_`
   Continuation continuation_;
+  DirectionGuide directions_;
   PathTracer path_tracer_;
   std::unique_ptr<LightTracer> light_tracer_;
   std::unique_ptr<Manifold> manifold_;

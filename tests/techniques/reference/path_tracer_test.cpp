@@ -30,13 +30,16 @@ SceneData makeRoom() {
 }
 
 /// Means over the picture of each layer by one scrambling.
-std::vector<double> render(std::uint32_t seed, const Continuation& continuation) {
-  const Camera camera = makeCamera("room", vec3(4.0F, 3.0F, 3.0F), vec3(0, 0.4F, 0), radians(45));
+Camera makeRoomCamera() { return makeCamera("room", vec3(4.0F, 3.0F, 3.0F), vec3(0, 0.4F, 0), radians(45)); }
+
+std::vector<double> render(std::uint32_t seed, const Continuation& continuation, const DirectionGuide& guide) {
+  const Camera camera = makeRoomCamera();
   const SceneData scene = makeRoom();
   ReferenceWorld world(scene, camera, kSide, kSide, ReferenceOptions{.seed = seed});
   const LayerNeeds needs(kLayers);
   PathTracer tracer(world, needs);
   tracer.continueBy(continuation);
+  tracer.guideBy(&guide);
   Film film(kSide, kSide, needs);
   parallelFor(kSide, [&](std::size_t y) {
     for (std::uint32_t pass = 0; pass < kPasses; ++pass) {
@@ -53,10 +56,10 @@ std::vector<double> render(std::uint32_t seed, const Continuation& continuation)
   return means;
 }
 
-void expectSameMeans(const Continuation& continuation) {
+void expectSameMeans(const Continuation& continuation, const DirectionGuide& guide = {}) {
   std::vector<double> difference(kLayers.size(), 0.0), squares(difference), mean(difference);
   for (std::uint32_t seed = 0; seed < kSeeds; ++seed) {
-    const auto plain = render(seed, {}), other = render(seed + 100, continuation);
+    const auto plain = render(seed, {}, {}), other = render(seed + 100, continuation, guide);
     for (std::size_t layer = 0; layer < kLayers.size(); ++layer) {
       const double d = other[layer] - plain[layer];
       difference[layer] += d / kSeeds, squares[layer] += d * d / kSeeds, mean[layer] += plain[layer] / kSeeds;
@@ -74,6 +77,40 @@ TEST(PathTracer, GoingOnByChanceHasTheSameMean) {
   Continuation seldom;
   seldom.probability[1] = 0.3F, seldom.probability[2] = 0.5F;
   expectSameMeans(seldom);
+}
+
+std::vector<DirectionLesson> learnInRoom() {
+  const SceneData scene = makeRoom();
+  ReferenceWorld world(scene, makeRoomCamera(), kSide, kSide, ReferenceOptions{.seed = 77});
+  const LayerNeeds needs(kLayers);
+  const PathTracer tracer(world, needs);
+  Film film(kSide, kSide, needs);
+  std::vector<DirectionLesson> lessons;
+  PathCounters counters;
+  counters.lessons = &lessons;
+  for (std::uint32_t pass = 0; pass < 16; ++pass)
+    for (int y = 0; y < kSide; ++y)
+      for (int x = 0; x < kSide; ++x) tracer.tracePath(x, y, pass, film, counters);
+  return lessons;
+}
+
+TEST(PathTracer, GuidedPathsHaveTheSameMean) { expectSameMeans({}, DirectionGuide(learnInRoom())); }
+
+TEST(PathTracer, TellsWhatCameByEachWay) {
+  const std::vector<DirectionLesson> lessons = learnInRoom();
+  ASSERT_GT(lessons.size(), 5'000U);
+  double brought = 0.0;
+  for (const DirectionLesson& lesson : lessons) {
+    EXPECT_NEAR(length(lesson.dir), 1.0F, 1e-4F);
+    EXPECT_GT(lesson.pdf, 0.0F);
+    EXPECT_EQ(lesson.pdf, lesson.pdf_bsdf);
+    if (lesson.value > 0.0F) {
+      EXPECT_GT(lesson.distance, 0.0F);
+      EXPECT_GE(lesson.rays, 1.0F);
+    }
+    brought += lesson.value;
+  }
+  EXPECT_GT(brought, 0.0);
 }
 
 }  // namespace
