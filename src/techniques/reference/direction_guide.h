@@ -1,11 +1,11 @@
 // Ways on from diffuse surfaces as a pilot learned them: towards what light came from, by place (path guiding).
 //
-// Places are cells of a k-d tree, each with as many lessons as the others (as in Müller, Gross & Novák 2017, section
-// 3). What a cell's light came from are balls around points that its paths met first, each evenly filled as it is seen
-// from the place that asks: light through a prism that stands near comes from other directions a few centimetres on,
-// but from the same prism (Ruppert, Herholz & Lensch 2020, section 4, for other lobes). A ball is drawn in proportion
-// to √(mean square of what it brings / rays that it takes), which makes variance × cost least (Rath et al. 2022, eq.
-// 8): noise of what is met beyond counts as well as its mean.
+// Places are cells of a k-d tree, each with as many lessons as the others [mueller-2017]. What a cell's light came from
+// are balls around points that its paths met first, each evenly filled as it is seen from the place that asks: light
+// through a prism that stands near comes from other directions a few centimetres on, but from the same prism (as
+// [ruppert-2020] moves lobes of another kind). With s the mean square of what ways through a ball bring and c their
+// rays, variance × cost (∫ s/p)(∫ p·c) is least where p ∝ √(s/c): noise of what is met beyond counts as well as its
+// mean.
 #pragma once
 
 #include <cstdint>
