@@ -63,7 +63,7 @@ class Lessons {
   std::vector<DirectionLesson> lessons_;
 };
 
-/// @param brightness  by pixel  @param floor  of it, where it counts
+/// That these passes' paths would need. @param truth  the picture, as far as it is known
 double timeOf(const Lessons& lessons, const std::vector<dvec3>& truth, const PictureTiles& tiles) {
   const double floor = pilotFloor(truth);
   std::vector<double> variances(tiles.count(), 0.0), costs(variances);
