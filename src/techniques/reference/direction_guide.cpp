@@ -18,13 +18,25 @@ constexpr double kLeastShare = 1.0 / 256.0;
 constexpr float kMargin = 1.2F;
 /// Rays of a path before it goes on, roughly: a way that meets nothing is not free.
 constexpr double kRaysBefore = 1.0;
-/// What is met at infinity, over the largest finite distance that is worth telling from it, m.
-constexpr float kFarthest = 1000.0F;
+/// Sine of the angle that a ball's radius is seen under at least: light that few lessons met comes from beside those
+/// points as well.
+constexpr float kLeastSine = 0.01F;
+/// Where nothing was met: at so many times the largest distance at which something was.
+constexpr float kInfinity = 1000.0F;
 /// A lobe whose lessons gained less is not worth looking up.
 constexpr double kLeastGain = 1.5;
 
-vec3 metBy(const DirectionLesson& lesson) {
-  return lesson.position + std::min(lesson.distance, kFarthest) * lesson.dir;
+/// Where the lesson met something. @pre a finite distance
+vec3 metBy(const DirectionLesson& lesson) { return lesson.position + lesson.distance * lesson.dir; }
+
+/// Makes every distance finite.
+void bringInfinityNear(std::span<DirectionLesson> lessons) {
+  float farthest = 0.0F;
+  for (const DirectionLesson& lesson : lessons)
+    if (std::isfinite(lesson.distance)) farthest = std::max(farthest, lesson.distance);
+  const float infinity = farthest > 0.0F ? kInfinity * farthest : 1.0F;
+  for (DirectionLesson& lesson : lessons)
+    if (!std::isfinite(lesson.distance)) lesson.distance = infinity;
 }
 
 /// 1 − cos of the half-angle of a ball. @param offset  to its centre  @return 2 from inside
@@ -64,7 +76,7 @@ class Cluster {
   vec3 low_{std::numeric_limits<float>::max()}, high_{std::numeric_limits<float>::lowest()};
   double squares_ = 0.0;  ///< Σ value²/pdf, an estimate of ∫ value² dω over all lessons of the cell
   double rays_ = 0.0;     ///< of one way
-  float squared_radius_ = std::numeric_limits<float>::min();
+  float squared_radius_ = 0.0F;
 };
 
 double gainOf(std::span<const DirectionLesson> lessons) {
@@ -88,6 +100,7 @@ DirectionLobe::DirectionLobe(std::span<DirectionLesson> lessons) : gain_(gainOf(
       std::partition(lessons.begin(), lessons.end(), [](const DirectionLesson& lesson) { return lesson.value > 0.0F; });
   const std::span<DirectionLesson> bright(lessons.begin(), dark);
   if (bright.empty()) return;
+  bringInfinityNear(bright);
   divide(bright, from, kLeastShare * Cluster(bright).mass(4.0 * kPi));
   double sum = 0.0, until = 0.0;
   for (const Target& target : targets_) sum += target.share;
@@ -102,10 +115,12 @@ DirectionLobe::DirectionLobe(std::span<DirectionLesson> lessons) : gain_(gainOf(
 /// @param from  where they are seen from  @param least  mass of what is divided
 void DirectionLobe::divide(std::span<DirectionLesson> lessons, vec3 from, double least) {
   const Cluster cluster(lessons);
-  const float one_minus_cos = oneMinusCosOf(cluster.centre() - from, cluster.squaredRadius());
+  const vec3 offset = cluster.centre() - from;
+  const float squared_radius = std::max(cluster.squaredRadius(), kLeastSine * kLeastSine * dot(offset, offset));
+  const float one_minus_cos = oneMinusCosOf(offset, squared_radius);
   const double mass = cluster.mass(2.0 * kPi * one_minus_cos);
   if (lessons.size() < kFewestOfBall || mass <= least) {
-    targets_.push_back({cluster.centre(), cluster.squaredRadius(), static_cast<float>(mass), 0.0F});
+    targets_.push_back({cluster.centre(), squared_radius, static_cast<float>(mass), 0.0F});
     return;
   }
   const int axis = cluster.axis();

@@ -30,7 +30,7 @@ struct DirectionLesson {
 /// Directions of one cell.
 class DirectionLobe {
  public:
-  /// @param lessons  of the cell, at least one; their order changes
+  /// @param lessons  of the cell, at least one; their order changes, and infinite distances
   explicit DirectionLobe(std::span<DirectionLesson> lessons);
 
   /// Did light come from anywhere?

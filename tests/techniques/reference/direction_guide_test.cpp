@@ -133,6 +133,22 @@ TEST(DirectionLobe, KnowsWhatItsLessonsGained) {
   EXPECT_NEAR(DirectionLobe(lessons).gain(), 50.0 * (500.0 * 2.02) / 1000.0, 0.1);
 }
 
+TEST(DirectionLobe, DoesNotSpendEverythingOnOnePoint) {
+  std::vector<DirectionLesson> lessons = makeLessons(1000, vec3(0), 0.5F, vec3(0, 100, 0), 1e-3F);
+  const vec3 up(0, 1, 0);
+  for (const float distance : {0.2F, 1e4F, std::numeric_limits<float>::infinity()}) {
+    lessons[17].value = 1.0F, lessons[17].dir = up, lessons[17].position = vec3(0), lessons[17].distance = distance;
+    std::vector<DirectionLesson> copy = lessons;
+    const DirectionLobe lobe(copy);
+    Sampler sampler(3, 2, 0);
+    const vec3 dir = lobe.sample(vec3(0), sampler.next2D());
+    EXPECT_GT(dot(dir, up), 0.99F) << distance;
+    // A cone of a hundredth: 1 / (π·10⁻⁴) a steradian.
+    EXPECT_GT(lobe.pdf(vec3(0), dir), 100.0F) << distance;
+    EXPECT_LT(lobe.pdf(vec3(0), dir), 4000.0F) << distance;
+  }
+}
+
 TEST(DirectionLobe, KnowsNothingOfDarkness) {
   std::vector<DirectionLesson> lessons = makeLessons(1000, vec3(0), 0.5F, vec3(0, 100, 0), 1e-3F);
   EXPECT_TRUE(DirectionLobe(lessons).empty());

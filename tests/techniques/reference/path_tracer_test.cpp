@@ -29,9 +29,9 @@ SceneData makeRoom() {
   return scene;
 }
 
-/// Means over the picture of each layer by one scrambling.
 Camera makeRoomCamera() { return makeCamera("room", vec3(4.0F, 3.0F, 3.0F), vec3(0, 0.4F, 0), radians(45)); }
 
+/// Means over the picture of each layer by one scrambling.
 std::vector<double> render(std::uint32_t seed, const Continuation& continuation, const DirectionGuide& guide) {
   const Camera camera = makeRoomCamera();
   const SceneData scene = makeRoom();
