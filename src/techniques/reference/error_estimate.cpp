@@ -19,6 +19,13 @@ namespace {
 constexpr std::uint64_t kBatchShare = 4;
 /// Batches of a generation at least.
 constexpr std::uint64_t kGenerationBatches = 4;
+/// Batches that are spread well with each other deviate more from their mean than independent ones of their variance
+/// would. Of `count` batches of n passes, n v(n) = A + B n^(-1/2), the textbook's variance has the mean
+/// count/(count − 1) · (v(n) − v(count · n)), which is (A + B n^(-1/2) · this)/n.
+double deviationOfDeclining(std::uint64_t count) {
+  const auto g = static_cast<double>(count);
+  return (1.0 - 1.0 / (g * std::sqrt(g))) / (1.0 - 1.0 / g);
+}
 
 using PlaneOf = const FilmPlane* LayerPlanes::*;
 
@@ -32,6 +39,14 @@ dvec3 sumOf(const std::vector<LayerPlanes>& planes, PlaneOf direction, std::size
   for (const LayerPlanes& p : planes)
     if (p.*direction && (p.*direction)->active()) sum += (p.*direction)->at(pixel);
   return sum;
+}
+
+/// What a sum over `count` passes adds to the squares by which sums deviate from their mean, weighted by passes.
+/// @param earlier  the sum before it, over `before` passes
+dvec3 squareApart(dvec3 sum, double count, dvec3 earlier, double before) {
+  if (before <= 0.0) return dvec3(0.0);
+  const dvec3 apart = sum / count - earlier / before;
+  return apart * apart * (count * before / (count + before));
 }
 
 }  // namespace
@@ -50,18 +65,20 @@ std::vector<std::string> layersWithError(const std::vector<std::string>& asked, 
 }
 
 BatchSpread::BatchSpread(std::size_t pixels)
-    : closed_(static_cast<int>(pixels), 1), squares_(closed_), generation_(closed_) {}
+    : closed_(static_cast<int>(pixels), 1), squares_(closed_), generation_(closed_), pair_(closed_) {}
 
 dvec3 BatchSpread::close(std::size_t pixel, dvec3 sum, double count, double before) {
   const dvec3 gained = sum - closed_.at(pixel);
   squares_.set(pixel, squares_.at(pixel) + gained * gained / count);
-  dvec3 deviation(0.0);
-  if (before > 0.0) {
-    const dvec3 apart = gained / count - (closed_.at(pixel) - generation_.at(pixel)) / before;
-    deviation = apart * apart * (count * before / (count + before));
-  }
+  const dvec3 deviation = squareApart(gained, count, closed_.at(pixel) - generation_.at(pixel), before);
   closed_.set(pixel, sum);
   return deviation;
+}
+
+dvec3 BatchSpread::closePair(std::size_t pixel, double count, double before) {
+  const dvec3 sum = closed_.at(pixel), sum_before = pair_.at(pixel);
+  pair_.set(pixel, sum);
+  return squareApart(sum - sum_before, count, sum_before - generation_.at(pixel), before);
 }
 
 dvec3 BatchSpread::varianceOfPass(std::size_t pixel, std::uint64_t batches, std::uint64_t passes) const {
@@ -85,18 +102,18 @@ ErrorEstimate::ErrorEstimate(const Film& film, const std::vector<std::string>& l
 }
 
 void ErrorEstimate::Direction::close(std::uint64_t gained) {
-  ++batches, ++generation_batches;
-  passes += gained;
+  ++batches, ++current.batches;
+  passes += gained, current.passes += gained;
+  if (closesPair()) current.paired = current.passes;
 }
 
 bool ErrorEstimate::Direction::endsGeneration() const {
-  return generation_batches >= kGenerationBatches && passes >= 2 * generation_begin;
+  return current.batches >= kGenerationBatches && passes >= 2 * (passes - current.passes);
 }
 
 void ErrorEstimate::Direction::beginGeneration() {
-  previous_batches = generation_batches;
-  generation_batches = 0;
-  generation_begin = passes;
+  previous = current;
+  current = {};
 }
 
 template <class Visit>
@@ -106,20 +123,28 @@ void ErrorEstimate::visitPixels(const Visit& visit) const {
   });
 }
 
-/// What a tile of a layer gained is a batch, which its direction counts already.
-/// @param before  passes of the generation without it  @param floor  see floorOf()
+/// What a tile of a layer gained is a batch. @param before,closed  its direction without the batch, and with it
+/// @param floor  see floorOf()
 void ErrorEstimate::closeTile(LayerSpread& layer, OfDirection LayerSpread::*direction, std::size_t tile,
-                              std::uint64_t gained, std::uint64_t before, double floor) const {
+                              const Direction& before, const Direction& closed, double floor) const {
   OfDirection& of = layer.*direction;
   if (!of.spread.active()) return;
   const PlaneOf plane = direction == &LayerSpread::eye ? &LayerPlanes::from_eye : &LayerPlanes::from_lights;
+  const auto gained = static_cast<double>(closed.passes - before.passes);
+  const auto earlier = static_cast<double>(before.current.passes);
+  const auto paired = static_cast<double>(before.current.paired);
+  Squares& squares = of.recent[tile].current;
   tiles_.visitPixels(tile, [&](int x, int y) {
     const std::size_t pixel = tiles_.pixelOf(x, y);
-    const dvec3 deviation = of.spread.close(pixel, sumOf(layer.planes, plane, pixel), static_cast<double>(gained),
-                                            static_cast<double>(before));
-    const dvec3 mean = meanAt(layer, tile, pixel);
-    for (int c = 0; c < 3; ++c)
-      if (deviation[c] > 0.0) of.recent[tile].current += deviation[c] / (mean[c] * mean[c] + floor);
+    const dvec3 of_batch = of.spread.close(pixel, sumOf(layer.planes, plane, pixel), gained, earlier);
+    const dvec3 mean = meanAt(layer, tile, pixel), scale = mean * mean + floor;
+    const auto addTo = [&](double& sum, dvec3 deviation) {
+      for (int c = 0; c < 3; ++c)
+        if (deviation[c] > 0.0) sum += deviation[c] / scale[c];
+    };
+    addTo(squares.batches, of_batch);
+    if (!closed.closesPair()) return;
+    addTo(squares.pairs, of.spread.closePair(pixel, earlier + gained - paired, paired));
   });
 }
 
@@ -128,7 +153,7 @@ void ErrorEstimate::beginGeneration(OfDirection LayerSpread::*direction, std::si
     OfDirection& of = layer.*direction;
     if (!of.spread.active()) continue;
     tiles_.visitPixels(tile, [&](int x, int y) { of.spread.beginGeneration(tiles_.pixelOf(x, y)); });
-    of.recent[tile] = {.current = 0.0, .previous = of.recent[tile].current};
+    of.recent[tile] = {.current = {}, .previous = of.recent[tile].current};
   }
 }
 
@@ -145,10 +170,10 @@ void ErrorEstimate::closeEyeBatchesWhere(std::span<const std::uint64_t> passes, 
     Direction& closed = eye_[tile];
     const std::uint64_t gained = passes[tile] - closed.passes;
     if (gained == 0 || !is_due(closed, gained)) return;
-    const std::uint64_t before = closed.ofGeneration();
+    const Direction before = closed;
     closed.close(gained);
     for (std::size_t i = 0; i < layers_.size(); ++i)
-      closeTile(layers_[i], &LayerSpread::eye, tile, gained, before, floor[i]);
+      closeTile(layers_[i], &LayerSpread::eye, tile, before, closed, floor[i]);
     if (!closed.endsGeneration()) return;
     beginGeneration(&LayerSpread::eye, tile);
     closed.beginGeneration();
@@ -167,13 +192,13 @@ void ErrorEstimate::closeFullEyeBatches(std::span<const std::uint64_t> passes, s
 
 void ErrorEstimate::closeLightBatch(std::uint64_t passes) {
   if (passes == lights_.passes) return;
-  const std::uint64_t gained = passes - lights_.passes, before = lights_.ofGeneration();
   const std::vector<double> floor = floors();
-  lights_.close(gained);
+  const Direction before = lights_;
+  lights_.close(passes - before.passes);
   const bool ends = lights_.endsGeneration();
   parallelFor(tiles_.count(), [&](std::size_t tile) {
     for (std::size_t i = 0; i < layers_.size(); ++i)
-      closeTile(layers_[i], &LayerSpread::lights, tile, gained, before, floor[i]);
+      closeTile(layers_[i], &LayerSpread::lights, tile, before, lights_, floor[i]);
     if (ends) beginGeneration(&LayerSpread::lights, tile);
   });
   if (ends) lights_.beginGeneration();
@@ -210,10 +235,34 @@ dvec3 ErrorEstimate::varianceOfMean(const BatchSpread& spread, const Direction& 
   return spread.varianceOfPass(pixel, closed.batches, closed.passes) / static_cast<double>(passes);
 }
 
-double ErrorEstimate::recentVarianceOfPass(const OfDirection& direction, std::size_t tile, const Direction& closed) {
-  if (!direction.spread.active() || closed.batches == 0) return 0.0;
-  if (closed.batches == 1) return std::numeric_limits<double>::infinity();
-  return direction.recent[tile].total() / closed.recentFreedom();
+ErrorEstimate::PassVariance ErrorEstimate::recentVarianceOfPass(const OfDirection& direction, std::size_t tile,
+                                                                const Direction& closed) {
+  if (!direction.spread.active() || closed.batches == 0) return {};
+  if (closed.batches == 1) return {.by_batches = std::numeric_limits<double>::infinity()};
+  const Recent& recent = direction.recent[tile];
+  // A mean of each generation is known by one of its batches.
+  const auto freedomOf = [](std::uint64_t n) { return n > 0 ? static_cast<double>(n - 1) : 0.0; };
+  // B: of the generation before, which alone has pairs to compare.
+  const Generation& previous = closed.previous;
+  double declining = 0.0;
+  if (const std::uint64_t pairs = previous.pairs(); pairs >= 2)
+    declining = (recent.previous.batches / freedomOf(previous.batches) - recent.previous.pairs / freedomOf(pairs)) *
+                std::sqrt(previous.passesPerBatch()) /
+                (deviationOfDeclining(previous.batches) - deviationOfDeclining(pairs) / std::sqrt(2.0));
+  const double freedom = freedomOf(closed.current.batches) + freedomOf(previous.batches);
+  const double of_whole = 1.0 / std::sqrt(static_cast<double>(closed.passes));
+  PassVariance variance;
+  const auto addGeneration = [&](const Generation& generation, double squares) {
+    if (generation.batches < 2) return;
+    const double share = freedomOf(generation.batches) / freedom;
+    const double of_batches = deviationOfDeclining(generation.batches) / std::sqrt(generation.passesPerBatch());
+    variance.by_batches += squares / freedom;
+    variance.least += squares / freedom * of_whole / of_batches;
+    variance.decline += share * declining * (of_batches - of_whole);
+  };
+  addGeneration(closed.current, recent.current.batches);
+  addGeneration(previous, recent.previous.batches);
+  return variance;
 }
 
 Image ErrorEstimate::standardError(std::string_view layer, std::span<const std::uint64_t> passes_from_eye,
@@ -253,21 +302,27 @@ double ErrorEstimate::floorOf(const LayerSpread& layer) const {
 RelativeError ErrorEstimate::relMse(std::string_view name) const {
   const LayerSpread& layer = find(name);
   const double values = 3.0 * tiles_.width() * tiles_.height();
-  RelativeError error;
-  for (std::size_t tile = 0; tile < tiles_.count(); ++tile) {
-    const double eye = recentVarianceOfPass(layer.eye, tile, eye_[tile]);
-    const double lights = recentVarianceOfPass(layer.lights, tile, lights_);
-    if (eye > 0.0) error.from_eye += eye / static_cast<double>(eye_[tile].passes) / values;
-    if (lights > 0.0) error.from_lights += lights / static_cast<double>(lights_.passes) / values;
-  }
-  return error;
+  const auto errorOf = [&](const OfDirection& direction, const auto& closedIn) {
+    // Single tiles say too little of how it declines.
+    double by_batches = 0.0, decline = 0.0, least = 0.0;
+    for (std::size_t tile = 0; tile < tiles_.count(); ++tile) {
+      const Direction& closed = closedIn(tile);
+      const PassVariance variance = recentVarianceOfPass(direction, tile, closed);
+      if (!(variance.by_batches > 0.0)) continue;
+      const double scale = 1.0 / (static_cast<double>(closed.passes) * values);
+      by_batches += scale * variance.by_batches, decline += scale * variance.decline, least += scale * variance.least;
+    }
+    return std::max(by_batches - decline, least);
+  };
+  return {.from_eye = errorOf(layer.eye, [&](std::size_t tile) -> const Direction& { return eye_[tile]; }),
+          .from_lights = errorOf(layer.lights, [&](std::size_t) -> const Direction& { return lights_; })};
 }
 
 std::vector<double> ErrorEstimate::variancesOfPass(std::string_view name) const {
   const LayerSpread& layer = find(name);
   std::vector<double> variances;
   for (std::size_t tile = 0; tile < tiles_.count(); ++tile)
-    variances.push_back(recentVarianceOfPass(layer.eye, tile, eye_[tile]));
+    variances.push_back(recentVarianceOfPass(layer.eye, tile, eye_[tile]).by_batches);
   return variances;
 }
 

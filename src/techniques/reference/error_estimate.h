@@ -6,13 +6,16 @@
 // What is summed is the layer, not its parts: paths of one pass (photons of one batch) are shared by all layers, so
 // that the variance of `beauty` is not the sum of theirs.
 //
-// Low-discrepancy points err less than the spread of short runs of them says. So batches grow with the render, an
-// eighth to a quarter of it each, and how large the error of the picture is, is what the last four to eight of them say
-// (two generations, see below). For single pixels those are too few: their standard errors are by all batches.
+// Low-discrepancy points err less than the spread of short runs of them says: over the outline of a shadow the variance
+// of n well-spread points falls as n^(-3/2), not as 1/n. So batches grow with the render, an eighth to a quarter of it
+// each, and how large the error of the picture is, is what the last four to eight of them say (two generations, see
+// below), carried on to the whole: the variance v of a run of n passes is modelled as n v(n) = A + B n^(-1/2), and what
+// single batches of a generation and pairs of them differ by are two such runs of the same passes, which give B. No
+// more is taken off than there would be with A = 0: smoother integrands fall faster still. For single pixels there are
+// too few batches: their standard errors are by all of them, as they are.
 //
-// Limits: it knows noise alone, no kernel's blur, and nothing of light that no path has found yet. It is what runs of
-// an eighth to a quarter of the points say: rather too large where the integrand is smooth, and standard errors of
-// pixels are more so.
+// Limits: it knows noise alone, no kernel's blur, and nothing of light that no path has found yet. Standard errors of
+// pixels are what short runs of points say: too large where the integrand is smooth or has an outline.
 #pragma once
 
 #include <cstdint>
@@ -41,8 +44,13 @@ class BatchSpread {
   /// @return what it adds to the sum of the squares, weighted by passes, by which batches of its generation deviate
   /// from their mean
   dvec3 close(std::size_t pixel, dvec3 sum, double count, double before);
+  /// The batches since the last pair of this generation are a pair. All as for close().
+  dvec3 closePair(std::size_t pixel, double count, double before);
   /// Batches from here on are a generation of their own.
-  void beginGeneration(std::size_t pixel) { generation_.set(pixel, closed_.at(pixel)); }
+  void beginGeneration(std::size_t pixel) {
+    generation_.set(pixel, closed_.at(pixel));
+    pair_.set(pixel, closed_.at(pixel));
+  }
   /// Variance of one pass. @param batches  closed, >= 2  @param passes  in them
   dvec3 varianceOfPass(std::size_t pixel, std::uint64_t batches, std::uint64_t passes) const;
 
@@ -53,12 +61,14 @@ class BatchSpread {
     state.values(closed_.values());
     state.values(squares_.values());
     state.values(generation_.values());
+    state.values(pair_.values());
   }
 
  private:
   FilmPlane closed_;      ///< sum of all closed batches
   FilmPlane squares_;     ///< Σ S_b²/n_b
   FilmPlane generation_;  ///< sum of those before this generation
+  FilmPlane pair_;        ///< sum of those before the pair that is not closed yet
 };
 
 /// relMSE of a picture by its own standard errors, in the parts that more passes from the eye or more photons lessen.
@@ -71,7 +81,7 @@ struct RelativeError {
 /// @param asked         names of layers  @param target_error  0: none
 std::vector<std::string> layersWithError(const std::vector<std::string>& asked, double target_error);
 
-/// Standard errors of several layers of a film. Memory: 144 bytes a pixel and layer (72 where only one direction adds).
+/// Standard errors of several layers of a film. Memory: 192 bytes a pixel and layer (96 where only one direction adds).
 class ErrorEstimate {
  public:
   /// @param film    must outlive it
@@ -109,8 +119,8 @@ class ErrorEstimate {
   };
   /// Whose estimate is the largest.
   OfLayer worst() const;
-  /// By tile: Σ σ₁²/(I² + (0.01·mean I)²) over pixels and channels, with σ₁² the variance of one pass from the eye. Two
-  /// closed batches in every tile at least.
+  /// By tile: Σ σ₁²/(I² + (0.01·mean I)²) over pixels and channels, with σ₁² the variance of one pass from the eye as
+  /// batches say. Two closed batches in every tile at least.
   std::vector<double> variancesOfPass(std::string_view layer) const;
 
   /// Visits all that a checkpoint keeps of it, with `value(number)` and `values(span)`, in a fixed order.
@@ -126,26 +136,39 @@ class ErrorEstimate {
   }
 
  private:
+  /// Batches that follow each other, and every two of which are a pair.
+  struct Generation {
+    std::uint64_t batches = 0, passes = 0;
+    std::uint64_t paired = 0;  ///< passes in pairs
+
+    std::uint64_t pairs() const { return batches / 2; }
+    double passesPerBatch() const { return static_cast<double>(passes) / static_cast<double>(batches); }
+  };
   /// How far a direction has come. Generations double the passes: each is of four batches or more.
   struct Direction {
-    std::uint64_t batches = 0, passes = 0;                       ///< closed
-    std::uint64_t generation_batches = 0, previous_batches = 0;  ///< of this generation and of the one before
-    std::uint64_t generation_begin = 0;                          ///< passes before this generation
+    std::uint64_t batches = 0, passes = 0;  ///< closed
+    Generation current, previous;
 
-    std::uint64_t ofGeneration() const { return passes - generation_begin; }
-    /// A mean of each generation is known by one of its batches.
-    double recentFreedom() const {
-      const auto freedomOf = [](std::uint64_t n) { return n > 0 ? static_cast<double>(n - 1) : 0.0; };
-      return freedomOf(generation_batches) + freedomOf(previous_batches);
-    }
     void close(std::uint64_t gained);
+    /// Did the batch that was closed last make a pair with the one before?
+    bool closesPair() const { return current.batches % 2 == 0; }
     bool endsGeneration() const;
     void beginGeneration();
   };
-  /// Squares of a tile by which batches deviate from the mean of their generation, relative to what is seen.
+  /// Squares of a tile by which the batches of a generation, and the pairs of them, deviate from its mean, relative to
+  /// what is seen.
+  struct Squares {
+    double batches = 0.0, pairs = 0.0;
+  };
   struct Recent {
-    double current = 0.0, previous = 0.0;
-    double total() const { return current + previous; }
+    Squares current, previous;
+  };
+  /// Σ σ₁²/(I² + (0.01·mean I)²) over pixels and channels of a tile, where σ₁² is the variance of a mean over passes,
+  /// times the passes.
+  struct PassVariance {
+    double by_batches = 0.0;  ///< as deviations of batches say
+    double decline = 0.0;     ///< what it is less of a mean over all passes
+    double least = 0.0;       ///< that it is at least of a mean over all passes
   };
   struct LayerSpread {
     struct OfDirection {
@@ -163,11 +186,11 @@ class ErrorEstimate {
   double floorOf(const LayerSpread& layer) const;
   std::vector<double> floors() const;
   using OfDirection = LayerSpread::OfDirection;
-  void closeTile(LayerSpread& layer, OfDirection LayerSpread::*direction, std::size_t tile, std::uint64_t gained,
-                 std::uint64_t before, double floor) const;
+  void closeTile(LayerSpread& layer, OfDirection LayerSpread::*direction, std::size_t tile, const Direction& before,
+                 const Direction& closed, double floor) const;
   void beginGeneration(OfDirection LayerSpread::*direction, std::size_t tile);
-  /// Σ σ₁²/(I² + (0.01·mean I)²) over pixels and channels of a tile, by the last generations: infinite of one batch.
-  static double recentVarianceOfPass(const OfDirection& direction, std::size_t tile, const Direction& closed);
+  /// By the last generations: infinite of one batch.
+  static PassVariance recentVarianceOfPass(const OfDirection& direction, std::size_t tile, const Direction& closed);
   static dvec3 varianceOfMean(const BatchSpread& spread, const Direction& closed, std::size_t pixel,
                               std::uint64_t passes);
   /// Calls `visit(tile, x, y, pixel)`, in parallel for different tiles.
