@@ -8,7 +8,7 @@ namespace {
 
 /// Rates are so many times those that were measured to be the best, and no less than kLeastRate: too low a rate turns
 /// what the measurement missed into noise, too high a one only costs rays.
-constexpr double kSafety = 2.0, kLeastRate = 0.2;
+constexpr double kSafety = 2.0, kLeastRate = 0.5;
 
 /// Of a part and all that come after it.
 double sumFrom(const std::array<double, PathPart::kCount>& values, std::size_t part) {

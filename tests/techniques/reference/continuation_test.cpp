@@ -29,7 +29,7 @@ TEST(Continuation, FollowsWhatBringsNothingSeldom) {
   const PartTally tally{.squares = {900, 0, 0, 0, 0}, .rays = {1000, 800, 200, 0, 0}};
   const Continuation continuation = chooseContinuation(tally, 500.0);
   EXPECT_EQ(continuation.probability[0], 1.0F);
-  EXPECT_FLOAT_EQ(continuation.probability[1], 0.2F);
+  EXPECT_FLOAT_EQ(continuation.probability[1], 0.5F);
   // Those who are there are few enough.
   for (const std::size_t part : {2U, 3U, 4U}) EXPECT_EQ(continuation.probability[part], 1.0F) << part;
 }
@@ -40,12 +40,12 @@ TEST(Continuation, FollowsWhatBringsMuchAlways) {
 }
 
 TEST(Continuation, IsTwiceTheBestRateBetween) {
-  // Beyond the first event: 1/100 of the variance for 1/4 of the rays: √(0.01/0.25) = 0.2. Beyond the second 9/10 000
-  // for 4/100: 0.15, which is 0.75 of those that got so far.
-  const PartTally tally{.squares = {900, 9.1, 0.9, 0, 0}, .rays = {750, 210, 40, 0, 0}};
+  // Beyond the first event: 0.0225 of the variance for 1/4 of the rays: √(0.0225/0.25) = 0.3. Beyond the second
+  // 0.002916 for 4/100: 0.27, which is 0.9 of those that got so far.
+  const PartTally tally{.squares = {900, 19.584, 2.916, 0, 0}, .rays = {750, 210, 40, 0, 0}};
   const Continuation continuation = chooseContinuation(tally, 1000.0);
-  EXPECT_NEAR(continuation.probability[1], 0.4F, 1e-6F);
-  EXPECT_NEAR(continuation.probability[2], 0.75F, 1e-6F);
+  EXPECT_NEAR(continuation.probability[1], 0.6F, 1e-6F);
+  EXPECT_NEAR(continuation.probability[2], 0.9F, 1e-6F);
   EXPECT_EQ(continuation.into(makeEvents({kS, kD})), continuation.probability[1]);
   EXPECT_EQ(continuation.into(makeEvents({kD})), 1.0F);
 }
