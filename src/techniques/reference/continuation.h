@@ -1,9 +1,11 @@
-// How often paths that mirrors or glass sent to a diffuse surface go on from there, where what they may still find is
-// worth little: under water, all light that a surface gets has come through the water's own, and photons bring it.
+// How often paths that mirrors or glass sent to a diffuse surface go on from there, and take both ways at glass, where
+// what they may still find is worth little: under water, all light that a surface gets has come through the water's
+// own, and photons bring it.
 //
 // A variance V of paths that cost T rays is lessened most where each part of a path is followed at a rate of
 // √(second moment of what it brings / its rays) over √(V / T) (efficiency-optimised Russian roulette, Veach 1997,
-// section 10.4.1). The parts here: what is beyond the k-th diffuse event.
+// section 10.4.1). The parts here: what is beyond the k-th diffuse event, and what comes by the lesser of two ways at
+// clear glass, such as its mirror image, whatever its events.
 #pragma once
 
 #include <algorithm>
@@ -27,6 +29,7 @@ struct PathPart {
 /// Probability with which a path goes on into a part, by PathPart, from the part before.
 struct Continuation {
   std::array<float, PathPart::kCount> probability;
+  float lesser_way = 1.0F;  ///< probability that of two ways at clear glass the lesser is followed as well
   Continuation() { probability.fill(1.0F); }
   float into(const PathClass& events) const { return probability[PathPart::of(events)]; }
 };
@@ -35,6 +38,7 @@ struct Continuation {
 struct PartTally {
   std::array<double, PathPart::kCount> squares{};  ///< Σ of squared radiance, over contributions and channels
   std::array<double, PathPart::kCount> rays{};
+  double lesser_squares = 0.0, lesser_rays = 0.0;  ///< of those, what came by lesser ways at clear glass
 };
 
 /// The probabilities that lessen the variance most for its cost, on the safe side: what few paths measured of rare

@@ -55,6 +55,8 @@ class SmallRender {
         sum.squares[part] += parts_[pixel].squares[part] / scale;
         sum.rays[part] += parts_[pixel].rays[part];
       }
+      sum.lesser_squares += parts_[pixel].lesser_squares / scale;
+      sum.lesser_rays += parts_[pixel].lesser_rays;
     }
     return chooseContinuation(sum, variance);
   }

@@ -19,6 +19,8 @@ constexpr std::uint32_t kWalkSeedOffset = 0x6D6E6565U;
 /// the path began with. So a path has at most some dozen strands at once; a mirror image in glass (0.04) is followed
 /// from outside and, once more, from within, but not the image of an image.
 constexpr float kLeastShare = 1.0F / 64.0F;
+/// The lesser way, if it is less than this, is followed only as often as it pays.
+constexpr float kLesserShare = 1.0F / 4.0F;
 /// What is transmitted then draws its numbers from another seed: if both ways took the same, their errors would add up.
 constexpr std::uint32_t kSplitSeedOffset = 0x73747261U;
 
@@ -50,8 +52,9 @@ struct Strand {
   vec3 vertex{0.0F};                 ///< of the last event, or the eye
   bool previous_is_delta = true;
   float previous_pdf = 0.0F;
-  std::int64_t lesson = -1;   ///< that tells of the strand; −1: none
-  float lesson_scale = 0.0F;  ///< from radiance in the pixel to what came by the way of the lesson
+  bool by_lesser_way = false;  ///< came by one at clear glass
+  std::int64_t lesson = -1;    ///< that tells of the strand; −1: none
+  float lesson_scale = 0.0F;   ///< from radiance in the pixel to what came by the way of the lesson
 };
 
 /// One path on its way from the eye, with all of its strands.
@@ -124,7 +127,9 @@ class EyePath {
   void countRays(std::uint64_t rays) {
     counters_.rays += rays;
     if (DirectionLesson* lesson = lessonOfStrand()) lesson->rays += static_cast<float>(rays);
-    if (counters_.parts) counters_.parts->rays[PathPart::of(strand_.events)] += static_cast<double>(rays);
+    if (!counters_.parts) return;
+    counters_.parts->rays[PathPart::of(strand_.events)] += static_cast<double>(rays);
+    if (strand_.by_lesser_way) counters_.parts->lesser_rays += static_cast<double>(rays);
   }
 
   void addMet(const LightSet::Met& met) {
@@ -343,20 +348,26 @@ class EyePath {
   /// The path goes on as what is transmitted, and what is mirrored waits.
   /// @return false if nothing is transmitted
   bool followBoth(const Bsdf& bsdf) {
-    const Strand before = strand_;
     const float mirrored = bsdf.mirroring().probability, mirrored_share = mirroredShare(bsdf);
-    if (mirrored > 0.0F && followWay(bsdf, 0.0F, mirrored_share)) waiting_.push_back(strand_);
+    const bool lesser = continuation_.lesser_way >= 1.0F || strand_.sampler.next1D() < continuation_.lesser_way;
+    const Strand before = strand_;
+    if (mirrored > 0.0F && followWay(bsdf, 0.0F, mirrored_share, lesser)) waiting_.push_back(strand_);
     if (mirrored >= 1.0F) return false;
     strand_ = before;
     strand_.sampler = makeSampler(++split_count_ * kSplitSeedOffset);
-    return followWay(bsdf, kOneMinusEpsilon, 1.0F - mirrored_share);
+    return followWay(bsdf, kOneMinusEpsilon, 1.0F - mirrored_share, lesser);
   }
   /// @param u_lobe  the number by which chance would have taken this way  @param share  of this way
-  bool followWay(const Bsdf& bsdf, float u_lobe, float share) {
+  /// @param lesser  are lesser ways followed?
+  bool followWay(const Bsdf& bsdf, float u_lobe, float share, bool lesser) {
+    const bool is_lesser = share < kLesserShare;
+    if (is_lesser && !lesser) return false;
     auto s = bsdf.sample(EventClass::kSpecular, vec2(0.0F), u_lobe, Transport::kRadiance);
     if (!s) return false;
-    s->weight *= s->probability;
-    strand_.split_share *= share;
+    const float q = is_lesser ? continuation_.lesser_way : 1.0F;
+    s->weight *= s->probability / q;
+    strand_.split_share *= share / q;
+    strand_.by_lesser_way |= is_lesser;
     return follow(bsdf, EventClass::kSpecular, *s, 1.0F, false);
   }
 
@@ -423,7 +434,10 @@ class EyePath {
       ++counters_.not_finite;
       return;
     }
-    if (counters_.parts) counters_.parts->squares[PathPart::of(strand_.events)] += dot(radiance, radiance);
+    if (counters_.parts) {
+      counters_.parts->squares[PathPart::of(strand_.events)] += dot(radiance, radiance);
+      if (strand_.by_lesser_way) counters_.parts->lesser_squares += dot(radiance, radiance);
+    }
     if (DirectionLesson* lesson = lessonOfStrand()) lesson->value += strand_.lesson_scale * luminance(radiance);
     const auto addTo = [&](FilmPlane& plane, vec3 value) {
       if (plane.active()) plane.add(pixel_, value);

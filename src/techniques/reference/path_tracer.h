@@ -4,7 +4,8 @@
 // where lights have a size it can make those too. Each class of events (S, D) is its own integrand with its own
 // weights, so that a contribution always belongs to exactly one layer.
 // Where clear glass both mirrors and transmits a path follows both ways, as long as the lesser is worth it (splitting,
-// Arvo & Kirk 1990): what glass mirrors, a twenty-fifth, is else found by one path in twenty-five.
+// Arvo & Kirk 1990): what glass mirrors, a twenty-fifth, is else found by one path in twenty-five. In long renders the
+// lesser is followed as often as it pays (continuation.h).
 // Caustics in mirrors and through glass, L S⁺ D S⁺ E, and what they light in turn, L S … D … D S⁺ E, are gathered from
 // photons where a path from the eye first meets D (progressive photon mapping in the form of Knaus & Zwicker 2011):
 // biased by the kernel's width, which shrinks.

@@ -476,6 +476,10 @@ class ReferenceRender {
       result.notes.push_back(
           fmt::format("{:.0f} % of the paths go on from surfaces that they met by mirrors or glass: more bring little",
                       100.0F * into));
+    if (const float lesser = continuation_.lesser_way; lesser < 1.0F)
+      result.notes.push_back(fmt::format(
+          "{:.0f} % of the lesser ways at clear glass are followed, such as what it mirrors: more bring little",
+          100.0F * lesser));
     if (!directions_.empty())
       result.notes.emplace_back(
           "paths go on from diffuse surfaces towards what light came from in a pilot: half of them, where that pays");

@@ -50,8 +50,22 @@ TEST(Continuation, IsTwiceTheBestRateBetween) {
   EXPECT_EQ(continuation.into(makeEvents({kD})), 1.0F);
 }
 
+TEST(Continuation, FollowsLesserWaysAsOftenAsTheyPay) {
+  // A quarter of the rays for 9/10 000 of the variance: √(0.0009/0.25) = 0.06, of which eight times.
+  PartTally tally{.squares = {900, 90, 9, 0, 0}, .rays = {800, 150, 50, 0, 0}};
+  EXPECT_EQ(chooseContinuation(tally, 1000.0).lesser_way, 1.0F);
+  tally.lesser_rays = 250.0, tally.lesser_squares = 0.9;
+  EXPECT_NEAR(chooseContinuation(tally, 1000.0).lesser_way, 0.48F, 1e-6F);
+  tally.lesser_squares = 0.0;
+  EXPECT_EQ(chooseContinuation(tally, 1000.0).lesser_way, 0.25F);
+  tally.lesser_squares = 90.0;
+  EXPECT_EQ(chooseContinuation(tally, 1000.0).lesser_way, 1.0F);
+}
+
 TEST(Continuation, OfNothingMeasuredIsToGoOn) {
-  for (const float p : chooseContinuation({}, 0.0).probability) EXPECT_EQ(p, 1.0F);
+  const Continuation continuation = chooseContinuation({}, 0.0);
+  for (const float p : continuation.probability) EXPECT_EQ(p, 1.0F);
+  EXPECT_EQ(continuation.lesser_way, 1.0F);
 }
 
 }  // namespace

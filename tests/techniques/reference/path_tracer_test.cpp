@@ -79,6 +79,12 @@ TEST(PathTracer, GoingOnByChanceHasTheSameMean) {
   expectSameMeans(seldom);
 }
 
+TEST(PathTracer, LesserWaysByChanceHaveTheSameMean) {
+  Continuation seldom;
+  seldom.lesser_way = 0.3F;
+  expectSameMeans(seldom);
+}
+
 std::vector<DirectionLesson> learnInRoom() {
   const SceneData scene = makeRoom();
   ReferenceWorld world(scene, makeRoomCamera(), kSide, kSide, ReferenceOptions{.seed = 77});
