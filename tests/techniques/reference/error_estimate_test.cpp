@@ -135,8 +135,8 @@ double ratioAtEdges(bool spread_well) {
   return errors.relMse("direct").from_eye * static_cast<double>(covered.size()) / measured;
 }
 
-// Over an edge the variance of well-spread points falls as N^(-3/2): batches of an eighth alone would say 2.8 times as
-// much as it is. From 4096 pixels it is known to some 3 %, how it declines to some 10 %.
+// Over an edge the variance of well-spread points falls as N^(-3/2): batches of an eighth alone would say three times
+// as much as it is. From 4096 pixels it is known to some 3 %, how it declines to some 10 %.
 TEST(ErrorEstimate, KnowsThatPointsThatAreSpreadWellErrLess) {
   EXPECT_NEAR(ratioAtEdges(true), 1.0, 0.25);
   EXPECT_NEAR(ratioAtEdges(false), 1.0, 0.2);
