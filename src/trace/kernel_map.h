@@ -2,9 +2,8 @@
 //
 // The ellipse is the photon's footprint where it has one (photon differentials, [schjoth-2007]), which neighbours fill
 // evenly: those of a caustic overlap with little noise, however its sheets lie over each other. Else it is a disc.
-// Each is entered in every cell of a grid that it meets, so that a place looks into one cell. Ellipses whose areas are
-// within a factor of four share a grid, whose cells are as wide as the radius of a disc like the largest. Built in the
-// order of the photons, so that sums over a place do not depend on threads.
+// Ellipses whose areas are within a factor of four share a grid of their boxes, whose cells are as wide as the radius
+// of a disc like the largest. Built in the order of the photons, so that sums over a place do not depend on threads.
 #pragma once
 
 #include <algorithm>
@@ -12,22 +11,30 @@
 #include <span>
 #include <vector>
 
+#include "trace/box_grid.h"
 #include "trace/kernel_radii.h"
 #include "trace/photon_grid.h"
 
 namespace nephroid {
 
-/// A photon under Epanechnikov's kernel, 2 (1 − r²) over the area of its ellipse. What tells whether a place is under
-/// it is in one cache line.
+/// A photon under Epanechnikov's kernel, 2 (1 − r²) over the area of its ellipse. All of it is in one cache line.
 struct alignas(64) KernelPhoton {
-  vec3 position;            ///< world, m
-  vec3 across[2];           ///< r is how long an offset is in these, 1/m
-  vec3 normal;              ///< of the surface there, unit
-  float thickness_squared;  ///< an offset that is under it is no higher, m²
-  float inverse_axes;       ///< one over the product of both half-axes, 1/m²
-  vec3 dir;                 ///< unit, along the travel of light
-  vec3 flux;                ///< W, as in GridPhoton
+  vec3 position;       ///< world, m
+  vec3 across[2];      ///< r is how long an offset is in these, 1/m; perpendicular to each other and to the normal
+  float inverse_axes;  ///< one over the product of both half-axes, 1/m²
+  vec3 dir;            ///< unit, along the travel of light
+  vec3 flux;           ///< W, as in GridPhoton
 
+  /// Of the surface there, over `inverse_axes` unit.
+  vec3 scaledNormal() const { return cross(across[0], across[1]); }
+  /// An offset that is under it is no higher, m².
+  float squaredThickness() const { return kKernelFlatness * kKernelFlatness / inverse_axes; }
+  /// Is either off the other's plane by no more than a share of the ellipse's radius?
+  bool isThinAt(vec3 offset, vec3 normal_there) const {
+    const float height = dot(offset, normal_there), own = dot(offset, scaledNormal());
+    constexpr float kMost = kKernelFlatness * kKernelFlatness;
+    return height * height * inverse_axes <= kMost && own * own <= kMost * inverse_axes;
+  }
   /// r², in half-axes. @param offset  from it, m
   float squaredRadiusOf(vec3 offset) const {
     const float a = dot(offset, across[0]), b = dot(offset, across[1]);
@@ -55,51 +62,20 @@ class KernelMap {
   /// @param normal  unit
   template <class Visit>
   void visitKernels(vec3 position, vec3 normal, Visit&& visit) const {
-    for (const Grid& grid : grids_) {
-      const std::uint32_t bucket = grid.bucketOf(grid.cellAt(position));
-      for (std::uint32_t i = grid.begin[bucket]; i < grid.begin[bucket + 1]; ++i) {
-        const KernelPhoton& photon = photons_[grid.entries[i]];
+    for (const BoxGrid& grid : grids_)
+      grid.visitBoxesAt(position, [&](std::uint32_t index) {
+        const KernelPhoton& photon = photons_[index];
         const vec3 offset = position - photon.position;
         const float squared = photon.squaredRadiusOf(offset);
-        if (squared < 1.0F && isThin(photon, offset, normal)) visit(photon, squared);
-      }
-    }
+        if (squared < 1.0F && photon.isThinAt(offset, normal)) visit(photon, squared);
+      });
   }
 
  private:
-  /// Cells of one width, by a hash of where they are.
-  struct Grid {
-    float inverse_cell = 0.0F;  ///< 1/m
-    std::uint32_t mask = 0;
-    std::vector<std::uint32_t> begin;    ///< bucket count + 1 offsets
-    std::vector<std::uint32_t> entries;  ///< into photons_, by bucket
-
-    glm::ivec3 cellAt(vec3 position) const;
-    vec3 middleOf(glm::ivec3 cell) const;
-    std::uint32_t bucketOf(glm::ivec3 cell) const { return hashOfCell(cell.x, cell.y, cell.z) & mask; }
-  };
   class GridBuilder;
 
-  /// Is either off the other's plane by no more than a share of the ellipse's radius?
-  static bool isThin(const KernelPhoton& photon, vec3 offset, vec3 normal) {
-    const float height = dot(offset, normal), own = dot(offset, photon.normal);
-    return std::max(height * height, own * own) <= photon.thickness_squared;
-  }
-
   std::vector<KernelPhoton> photons_;
-  std::vector<Grid> grids_;
+  std::vector<BoxGrid> grids_;
 };
-
-/// Where the origin lies in its cell: not on its border, for many scenes have a floor there, which would then lie in
-/// two layers of cells.
-inline constexpr float kOriginInCell = 0.37F;
-
-inline glm::ivec3 KernelMap::Grid::cellAt(vec3 position) const {
-  constexpr float kMost = 1e9F;  // far beyond where floats still tell cells apart
-  return glm::floor(glm::clamp(position * inverse_cell + kOriginInCell, -kMost, kMost));
-}
-inline vec3 KernelMap::Grid::middleOf(glm::ivec3 cell) const {
-  return (vec3(cell) + (0.5F - kOriginInCell)) / inverse_cell;
-}
 
 }  // namespace nephroid

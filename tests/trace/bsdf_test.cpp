@@ -44,6 +44,23 @@ TEST(Bsdf, FullyRoughDielectricIsLambertian) {
   EXPECT_NEAR(value.f.z, 0.1F / kPi, 1e-6F);
 }
 
+TEST(Bsdf, LambertianOnesAreConstantWhereTheyReflect) {
+  const Surface matte(makeDiffuse(vec3(0.6F, 0.3F, 0.1F)));
+  for (const float wo : {5.0F, 80.0F}) {
+    const Bsdf bsdf = matte.at(directionAt(wo));
+    const auto constant = bsdf.constantDiffuse();
+    ASSERT_TRUE(constant);
+    for (const float wi : {-89.0F, -20.0F, 45.0F, 91.0F, 130.0F, 180.0F}) {
+      const vec3 f = bsdf.evaluate(EventClass::kDiffuse, directionAt(wi), Transport::kRadiance).f;
+      EXPECT_EQ(f, bsdf.reflectsFrom(directionAt(wi)) ? *constant : vec3(0.0F)) << wi;
+    }
+  }
+  Material varnish = makeDiffuse(vec3(0.6F));
+  varnish.roughness = 0.0F;
+  for (const Material& m : {varnish, makeGlass(1.5F, 0.8F), makeMetal(vec3(0.9F), 0.8F)})
+    EXPECT_FALSE(Surface(m).at(directionAt(30)).constantDiffuse()) << m.name;
+}
+
 TEST(Bsdf, WhiteSurfacesNeitherGainNorLose) {
   // Smooth interfaces conserve exactly; rough ones lose what single scattering loses between microfacets, never gain.
   Material varnish = makeDiffuse(vec3(1.0F));

@@ -169,29 +169,38 @@ class EyePath {
     vec3 irradiance{0.0F};  ///< where it is seen directly
     vec3 by_half{0.0F};     ///< radiance, if kernels had half of their areas
   };
-  Gathered gatherFrom(const KernelMap& map, const Bsdf& bsdf) {
+  Gathered gatherFrom(const KernelMap& map, const Bsdf& bsdf, bool asks_for_half) {
+    const auto constant = bsdf.constantDiffuse();
+    return constant
+               ? gatherBy(map, asks_for_half, [&](vec3 wi) { return bsdf.reflectsFrom(wi) ? *constant : vec3(0.0F); })
+               : gatherBy(map, asks_for_half,
+                          [&](vec3 wi) { return bsdf.evaluate(EventClass::kDiffuse, wi, Transport::kRadiance).f; });
+  }
+  /// @param reflect  the BSDF by direction  @param asks_for_half  may be skipped else
+  template <class Reflect>
+  Gathered gatherBy(const KernelMap& map, bool asks_for_half, const Reflect& reflect) {
     const SurfacePoint& point = encounter_.point;
-    Gathered found;
+    vec3 radiance(0.0F), irradiance(0.0F), by_half(0.0F);
     const bool seen_directly = strand_.events.count() == 0;
     map.visitKernels(point.position, point.normal_geometric, [&](const KernelPhoton& photon, float squared_radius) {
       const vec3 wi = -photon.dir;
-      const vec3 reflected = photon.flux * bsdf.evaluate(EventClass::kDiffuse, wi, Transport::kRadiance).f;
-      found.radiance += photon.weightAt(squared_radius) * reflected;
-      found.by_half += photon.halfWeightAt(squared_radius) * reflected;
+      const vec3 reflected = photon.flux * reflect(wi);
+      radiance += photon.weightAt(squared_radius) * reflected;
+      if (asks_for_half) by_half += photon.halfWeightAt(squared_radius) * reflected;
       // As for light that is connected to the camera: on the side that the eye sees.
       if (seen_directly && dot(wi, point.normal_geometric) * dot(strand_.state.ray.dir, point.normal_geometric) < 0.0F)
-        found.irradiance += photon.weightAt(squared_radius) * photon.flux;
+        irradiance += photon.weightAt(squared_radius) * photon.flux;
     });
-    return found;
+    return {radiance, irradiance, by_half};
   }
 
   void gatherCaustic(const Bsdf& bsdf) {
     const KernelMap& map = photons_->caustics();
     if (map.empty()) return;
-    const Gathered found = gatherFrom(map, bsdf);
+    FilmPlane& plane = strand_.events.count() == 0 ? film_.caustic_bias : film_.specular_caustic_bias;
+    const Gathered found = gatherFrom(map, bsdf, plane.active());
     record(strand_.events.with(EventClass::kDiffuse).with(EventClass::kSpecular), strand_.throughput * found.radiance,
            found.irradiance);
-    FilmPlane& plane = strand_.events.count() == 0 ? film_.caustic_bias : film_.specular_caustic_bias;
     if (!plane.active()) return;
     // Where light varies smoothly a kernel errs in proportion to its area at most (Knaus & Zwicker 2011), so by twice
     // what it says more than one of half its area.
@@ -204,7 +213,7 @@ class EyePath {
     if (map.empty()) return;
     const PathClass path =
         strand_.events.with(EventClass::kDiffuse).with(EventClass::kDiffuse).with(EventClass::kSpecular);  // for one
-    const Gathered found = gatherFrom(map, bsdf);
+    const Gathered found = gatherFrom(map, bsdf, false);
     record(path, strand_.throughput * found.radiance, found.irradiance);
   }
 
