@@ -66,7 +66,8 @@ double countIn(const std::vector<Corners>& boxes, const BoxGrid& grid, unsigned 
 TEST(BoxGrid, FindsAllBoxesThatHoldAPlaceOnceAndFewOthers) {
   constexpr float kCell = 0.2F;
   const std::vector<Corners> boxes = makeBoxes(1000, kCell, 1);
-  EXPECT_LT(countIn(boxes, makeGrid(boxes, kCell, boxes.size()), 2), 0.1);
+  // So many buckets that cells hardly share any: what is left is that sides are rounded.
+  EXPECT_LT(countIn(boxes, makeGrid(boxes, kCell, 16 * boxes.size()), 2), 0.1);
 }
 
 TEST(BoxGrid, FindsThemWhereCellsShareBuckets) {
