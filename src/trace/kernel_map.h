@@ -2,8 +2,9 @@
 //
 // The ellipse is the photon's footprint where it has one (photon differentials, [schjoth-2007]), which neighbours fill
 // evenly: those of a caustic overlap with little noise, however its sheets lie over each other. Else it is a disc.
-// Ellipses whose areas are within a factor of four share a grid of their boxes, whose cells are as wide as the radius
-// of a disc like the largest. Built in the order of the photons, so that sums over a place do not depend on threads.
+// Ellipses whose areas are within a factor of four share a grid of the boxes around them (box_grid.h), so that a place
+// looks into one cell of each grid. Built in the order of the photons, so that sums over a place do not depend on
+// threads.
 #pragma once
 
 #include <algorithm>
@@ -47,6 +48,7 @@ struct alignas(64) KernelPhoton {
     return 4.0F / kPi * inverse_axes * std::max(1.0F - 2.0F * squared_radius, 0.0F);
   }
 };
+static_assert(sizeof(KernelPhoton) == 64);
 
 class KernelMap {
  public:

@@ -176,7 +176,7 @@ class EyePath {
                : gatherBy(map, asks_for_half,
                           [&](vec3 wi) { return bsdf.evaluate(EventClass::kDiffuse, wi, Transport::kRadiance).f; });
   }
-  /// @param reflect  the BSDF by direction  @param asks_for_half  may be skipped else
+  /// @param reflect  the BSDF by direction  @param asks_for_half  is `by_half` wanted? It is 0 else
   template <class Reflect>
   Gathered gatherBy(const KernelMap& map, bool asks_for_half, const Reflect& reflect) {
     const SurfacePoint& point = encounter_.point;
