@@ -7,13 +7,6 @@
 namespace nephroid {
 namespace {
 
-/// Rates are so many times those that were measured to be the best, and no less than kLeastRate: too low a rate turns
-/// what the measurement missed into noise, too high a one only costs rays.
-constexpr double kSafety = 2.0, kLeastRate = 0.5;
-/// The same of lesser ways. Of `slab` the variance of the pilot is a hundred times that of a render, by outlines, which
-/// many points that are spread well resolve.
-constexpr double kLesserSafety = 8.0, kLeastLesserRate = 0.25;
-
 /// Of a part and all that come after it.
 double sumFrom(const std::array<double, PathPart::kCount>& values, std::size_t part) {
   return std::accumulate(values.begin() + static_cast<std::ptrdiff_t>(part), values.end(), 0.0);
@@ -21,21 +14,21 @@ double sumFrom(const std::array<double, PathPart::kCount>& values, std::size_t p
 
 }  // namespace
 
-Continuation chooseContinuation(const PartTally& tally, double variance) {
+Continuation chooseContinuation(const PartTally& tally, double variance, const RateLimits& limits) {
   Continuation continuation;
   double rate_before = 1.0;
   for (std::size_t part = 1; part < PathPart::kCount; ++part) {
     const double cost = sumFrom(tally.rays, part) / sumFrom(tally.rays, 0), gain = sumFrom(tally.squares, part);
     if (!(cost > 0.0)) break;
     const double best = gain > 0.0 ? std::sqrt(gain / variance / cost) : 0.0;
-    const double rate = std::min(rate_before, std::max(kSafety * best, kLeastRate));
+    const double rate = std::min(rate_before, std::max(limits.safety * best, limits.least));
     continuation.probability[part] = static_cast<float>(rate / rate_before);
     rate_before = rate;
   }
   if (tally.lesser_rays > 0.0 && variance > 0.0) {
     const double cost = tally.lesser_rays / sumFrom(tally.rays, 0);
     const double best = std::sqrt(tally.lesser_squares / variance / cost);
-    continuation.lesser_way = static_cast<float>(std::clamp(kLesserSafety * best, kLeastLesserRate, 1.0));
+    continuation.lesser_way = static_cast<float>(std::clamp(limits.lesser_safety * best, limits.least_lesser, 1.0));
   }
   return continuation;
 }

@@ -34,17 +34,36 @@ struct Continuation {
   float into(const PathClass& events) const { return probability[PathPart::of(events)]; }
 };
 
-/// What paths brought and cost, by PathPart.
+/// What paths brought and cost, by PathPart, about as if they had always gone on: those that weigh more, as they went on
+/// seldom, are split for longer at glass, which counts up to half more rays of the later parts.
 struct PartTally {
   std::array<double, PathPart::kCount> squares{};  ///< Σ of squared radiance, over contributions and channels
   std::array<double, PathPart::kCount> rays{};
   double lesser_squares = 0.0, lesser_rays = 0.0;  ///< of those, what came by lesser ways at clear glass
+  double excess = 0.0;                             ///< Σ of squared radiance that is there for want of always going on
+
+  /// @param scale  of squares  @param ray_scale  of rays
+  void add(const PartTally& other, double scale, double ray_scale) {
+    for (std::size_t part = 0; part < PathPart::kCount; ++part)
+      squares[part] += scale * other.squares[part], rays[part] += ray_scale * other.rays[part];
+    lesser_squares += scale * other.lesser_squares, lesser_rays += ray_scale * other.lesser_rays;
+    excess += scale * other.excess;
+  }
 };
 
-/// The probabilities that lessen the variance most for its cost, on the safe side: what few paths measured of rare
-/// light is too little more often than too much.
-/// @param tally     of paths that always went on; squares relative to the picture
-/// @param variance  of all those paths together, in the same units, summed as the squares are
-Continuation chooseContinuation(const PartTally& tally, double variance);
+/// Rates are so many times those that were measured to be the best, and no less than the least: too low a rate turns
+/// what the measurement missed into noise, too high a one only costs rays.
+struct RateLimits {
+  double safety, least;
+  double lesser_safety, least_lesser;  ///< of lesser ways
+};
+/// For what few paths measured. Of `slab` the variance of a pilot is a hundred times that of a render, by outlines,
+/// which many points that are spread well resolve: hence the safety of lesser ways.
+inline constexpr RateLimits kPilotLimits{.safety = 2.0, .least = 0.5, .lesser_safety = 8.0, .least_lesser = 0.25};
+
+/// The probabilities that lessen the variance most for its cost, within limits.
+/// @param tally     squares relative to the picture
+/// @param variance  of all those paths together, had they always gone on, in the same units, summed as the squares are
+Continuation chooseContinuation(const PartTally& tally, double variance, const RateLimits& limits = kPilotLimits);
 
 }  // namespace nephroid

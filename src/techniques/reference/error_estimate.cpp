@@ -326,6 +326,19 @@ std::vector<double> ErrorEstimate::variancesOfPass(std::string_view name) const 
   return variances;
 }
 
+std::vector<float> ErrorEstimate::relativeScales(std::string_view name) const {
+  if (eyeBatches() == 0) return {};
+  const LayerSpread& layer = find(name);
+  const double floor = floorOf(layer);
+  std::vector<float> scales(tiles_.pixels(), 0.0F);
+  visitPixels([&](std::size_t tile, int, int, std::size_t pixel) {
+    const dvec3 mean = meanAt(layer, tile, pixel);
+    const double brightness = (mean.x + mean.y + mean.z) / 3.0, square = brightness * brightness + floor;
+    if (square > 0.0) scales[pixel] = static_cast<float>(1.0 / square);
+  });
+  return scales;
+}
+
 ErrorEstimate::OfLayer ErrorEstimate::worst() const {
   NEPHROID_ASSERT_GT(layers_.size(), 0U);
   OfLayer worst{layers_.front().name, relMse(layers_.front().name)};

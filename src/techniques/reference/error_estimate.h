@@ -123,6 +123,9 @@ class ErrorEstimate {
   /// batches say. Two closed batches in every tile at least.
   std::vector<double> variancesOfPass(std::string_view layer) const;
 
+  /// By pixel: 1/(I² + (0.01·mean I)²), of the mean over channels; empty while a tile has no closed batch.
+  std::vector<float> relativeScales(std::string_view layer) const;
+
   /// Visits all that a checkpoint keeps of it, with `value(number)` and `values(span)`, in a fixed order.
   template <class State>
   void visitState(State& state) {

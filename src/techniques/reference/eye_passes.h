@@ -1,9 +1,12 @@
 // Passes of paths from the eye, tile by tile: how many each has had, and which get the next ones.
 //
 // A pass is one path through each pixel. Where errors steer a render it need not go everywhere: with v_t the variance
-// of one pass over tile t, relative to what is seen there, and c_t the rays that it costs, the error Σ v_t/n_t at a
-// cost of Σ c_t n_t is least where n_t is in proportion to √(v_t/c_t). So the next pass belongs where v_t/(c_t n_t²),
-// by which the error falls per ray, is largest.
+// of one pass over tile t, relative to what is seen there, and c_t what it costs, the error Σ v_t/n_t at a cost of
+// Σ c_t n_t is least where n_t is in proportion to √(v_t/c_t).
+//
+// Passes that gather photons must also be spread over the batches of them: four passes that gather one batch err alike
+// by its photons. So a tile is not given many passes in one round and none in the next: each round brings it what its
+// rate says, rounded, and what rounding left over counts for the next.
 #pragma once
 
 #include <cstdint>
@@ -27,14 +30,14 @@ class EyePasses {
 
   /// The next round: one pass over the whole picture.
   void planAll();
-  /// The next round: about as many rays as a pass over the whole picture costs, where they lessen the error most.
-  /// Tiles get `quantum` passes at once, aligned to it: points of a sampler are well spread in such blocks.
+  /// The next round: passes at the same cost as one over the whole picture, at rates that bring the numbers of passes
+  /// to where the error is least once the render has taken twice as long as so far. Every tile must have had one.
   /// @param variances  of one pass, relative, summed over the tile
-  void planWhereItPays(std::span<const double> variances, std::uint32_t quantum);
+  void planWhereItPays(std::span<const double> variances);
   /// Is there anything of a round left to do?
   bool planned() const;
 
-  /// Does what is left of the round: calls `trace(x, y, sample)`, which returns the rays that it took, in parallel for
+  /// Does what is left of the round: calls `trace(x, y, sample)`, which returns what it cost, in rays, in parallel for
   /// different tiles. A tile is done as a whole; once `stopped()` says so no further tile is begun.
   void run(const std::function<std::uint64_t(int x, int y, std::uint32_t sample)>& trace,
            const std::function<bool()>& stopped);
@@ -44,14 +47,18 @@ class EyePasses {
   void visitState(State& state) {
     state.values(std::span(done_));
     state.values(std::span(planned_));
-    state.values(std::span(rays_));
+    state.values(std::span(costs_));
+    state.values(std::span(due_));
   }
 
  private:
+  std::vector<double> ratesWhereItPays(std::span<const double> variances) const;
+
   PictureTiles tiles_;
   std::vector<std::uint64_t> done_;     ///< passes, by tile
   std::vector<std::uint32_t> planned_;  ///< passes of this round that are left, by tile
-  std::vector<std::uint64_t> rays_;     ///< of all passes, by tile
+  std::vector<std::uint64_t> costs_;    ///< of all passes, by tile
+  std::vector<double> due_;             ///< passes that rounds owe, or were ahead, by tile: half a pass at most
 };
 
 }  // namespace nephroid

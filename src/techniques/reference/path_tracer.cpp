@@ -48,6 +48,7 @@ struct Strand {
   vec3 throughput{1.0F};             ///< without the weight of its wavelengths
   vec3 irradiance_throughput{0.0F};  ///< the same from the first diffuse event on, with cosine instead of BSDF there
   float split_share = 1.0F;          ///< of the path, after all splits
+  float rate = 1.0F;                 ///< probability with which it was followed this far (see Continuation)
   float rarity = 1.0F;               ///< density of a guided way by the BSDF alone, over that with which it was drawn
   vec3 vertex{0.0F};                 ///< of the last event, or the eye
   bool previous_is_delta = true;
@@ -128,8 +129,9 @@ class EyePath {
     counters_.rays += rays;
     if (DirectionLesson* lesson = lessonOfStrand()) lesson->rays += static_cast<float>(rays);
     if (!counters_.parts) return;
-    counters_.parts->rays[PathPart::of(strand_.events)] += static_cast<double>(rays);
-    if (strand_.by_lesser_way) counters_.parts->lesser_rays += static_cast<double>(rays);
+    const double always = static_cast<double>(rays) / strand_.rate;
+    counters_.parts->rays[PathPart::of(strand_.events)] += always;
+    if (strand_.by_lesser_way) counters_.parts->lesser_rays += always;
   }
 
   void addMet(const LightSet::Met& met) {
@@ -181,8 +183,10 @@ class EyePath {
   Gathered gatherBy(const KernelMap& map, bool asks_for_half, const Reflect& reflect) {
     const SurfacePoint& point = encounter_.point;
     vec3 radiance(0.0F), irradiance(0.0F), by_half(0.0F);
+    std::uint64_t kernels = 0;
     const bool seen_directly = strand_.events.count() == 0;
     map.visitKernels(point.position, point.normal_geometric, [&](const KernelPhoton& photon, float squared_radius) {
+      ++kernels;
       const vec3 wi = -photon.dir;
       const vec3 reflected = photon.flux * reflect(wi);
       radiance += photon.weightAt(squared_radius) * reflected;
@@ -191,6 +195,7 @@ class EyePath {
       if (seen_directly && dot(wi, point.normal_geometric) * dot(strand_.state.ray.dir, point.normal_geometric) < 0.0F)
         irradiance += photon.weightAt(squared_radius) * photon.flux;
     });
+    counters_.kernels += kernels;
     return {radiance, irradiance, by_half};
   }
 
@@ -294,6 +299,7 @@ class EyePath {
     const float q = continuation_.into(strand_.events.with(EventClass::kDiffuse));
     if (q < 1.0F && strand_.sampler.next1D() >= q) return false;
     share /= q;
+    strand_.rate *= q;
     const vec2 u = strand_.sampler.next2D();
     auto way = guided(bsdf).sample(u, strand_.sampler.next1D(), by);
     if (!way) return false;
@@ -376,6 +382,7 @@ class EyePath {
     const float q = is_lesser ? continuation_.lesser_way : 1.0F;
     s->weight *= s->probability / q;
     strand_.split_share *= share / q;
+    strand_.rate *= q;
     strand_.by_lesser_way |= is_lesser;
     return follow(bsdf, EventClass::kSpecular, *s, 1.0F, false);
   }
@@ -444,8 +451,11 @@ class EyePath {
       return;
     }
     if (counters_.parts) {
-      counters_.parts->squares[PathPart::of(strand_.events)] += dot(radiance, radiance);
-      if (strand_.by_lesser_way) counters_.parts->lesser_squares += dot(radiance, radiance);
+      // Followed always it would weigh less, but be there as often again.
+      const double found = dot(radiance, radiance), always = strand_.rate * found;
+      counters_.parts->squares[PathPart::of(strand_.events)] += always;
+      if (strand_.by_lesser_way) counters_.parts->lesser_squares += always;
+      counters_.parts->excess += found - always;
     }
     if (DirectionLesson* lesson = lessonOfStrand()) lesson->value += strand_.lesson_scale * luminance(radiance);
     const auto addTo = [&](FilmPlane& plane, vec3 value) {
@@ -496,9 +506,10 @@ class EyePath {
 
 }  // namespace
 
-void PathTracer::tracePath(int x, int y, std::uint32_t sample, Film& film, PathCounters& counters) const {
+void PathTracer::tracePath(int x, int y, std::uint32_t sample, Film& film, PathCounters& counters,
+                           const Continuation& continuation) const {
   const auto pixel = static_cast<std::size_t>(y) * film.width + x;
-  EyePath path(world_, needs_, photons_, gathered_, left_, manifold_, continuation_, guide_, film, counters, pixel,
+  EyePath path(world_, needs_, photons_, gathered_, left_, manifold_, continuation, guide_, film, counters, pixel,
                sample);
   path.trace(vec2(static_cast<float>(x), static_cast<float>(y)));
 }

@@ -27,11 +27,15 @@
 namespace nephroid {
 
 struct PathCounters {
-  std::uint64_t rays = 0;
+  std::uint64_t rays = 0, kernels = 0;  ///< traced, and gathered
   std::uint64_t not_finite = 0;
   // Filled if there:
   PartTally* parts = nullptr;
   std::vector<DirectionLesson>* lessons = nullptr;  ///< one for each way on from a path's first diffuse surface
+
+  /// How long it took, in rays: five kernels take as long as one, measured on `seabed`, `pool` and `wave`. Counted and
+  /// not timed, for equal renders must take equal steps.
+  std::uint64_t work() const { return rays + kernels / 5; }
 };
 
 class PathTracer {
@@ -53,7 +57,12 @@ class PathTracer {
   /// may be none.
   void guideBy(const DirectionGuide* guide) { guide_ = guide; }
   /// One path through pixel (x, y), added to the film. Safe from any thread as long as no two share a pixel.
-  void tracePath(int x, int y, std::uint32_t sample, Film& film, PathCounters& counters) const;
+  void tracePath(int x, int y, std::uint32_t sample, Film& film, PathCounters& counters) const {
+    tracePath(x, y, sample, film, counters, continuation_);
+  }
+  /// The same, going on by another continuation.
+  void tracePath(int x, int y, std::uint32_t sample, Film& film, PathCounters& counters,
+                 const Continuation& continuation) const;
 
  private:
   const ReferenceWorld& world_;

@@ -33,6 +33,14 @@ class PictureTiles {
     for (int y = y_first; y < std::min(y_first + kSide, height_); ++y)
       for (int x = x_first; x < std::min(x_first + kSide, width_); ++x) visit(x, y);
   }
+  /// Calls `visit(other)` for a tile and those that touch it.
+  template <class Visit>
+  void visitAround(std::size_t tile, const Visit& visit) const {
+    const auto columns = static_cast<std::size_t>(columns_), rows = count() / columns;
+    const std::size_t column = tile % columns, row = tile / columns;
+    for (std::size_t r = row > 0 ? row - 1 : 0; r < std::min(row + 2, rows); ++r)
+      for (std::size_t c = column > 0 ? column - 1 : 0; c < std::min(column + 2, columns); ++c) visit(r * columns + c);
+  }
   std::size_t pixelOf(int x, int y) const {
     return static_cast<std::size_t>(y) * static_cast<std::size_t>(width_) + static_cast<std::size_t>(x);
   }

@@ -7,6 +7,7 @@
 #include <chrono>
 #include <filesystem>
 #include <memory>
+#include <optional>
 #include <system_error>
 #include <utility>
 
@@ -102,6 +103,7 @@ class ReferenceRender {
       continuation_ = measureContinuation(world_, camera, settings.width, settings.height, path_needs_,
                                           {from_photons, connect, gathered});
     path_tracer_.continueBy(continuation_);
+    if (paysToMeasureContinuation() && steering_.steers()) rates_.emplace(passes_.tiles(), continuation_);
     if (paysToLearnDirections()) {
       PathTracer learner(world_, path_needs_);
       learner.leaveToPhotons(from_photons);
@@ -253,12 +255,12 @@ class ReferenceRender {
     if (gather_) {
       // Paths that gather the same photons over and over err alike.
       const std::uint64_t rounds = samples_done_ - samples_at_photons_;
-      if (rounds == 0) return steering_.ungatheredPhotonsPay(path_rays_, light_rays_);
+      if (rounds == 0) return steering_.ungatheredPhotonsPay(path_work_, light_rays_);
       if (steering_.mustGatherOn(rounds)) return false;
       if (!steering_.mayGatherOn(rounds, samples_done_)) return true;
     }
     if (!steering_.isKnown()) return share(photons_done_, kDefaultPhotons) <= share(samples_done_, kDefaultSamples);
-    return steering_.photonsPay(path_rays_, light_rays_);
+    return steering_.photonsPay(path_work_, light_rays_);
   }
 
   static double share(std::uint64_t done, std::uint64_t budget) {
@@ -267,25 +269,37 @@ class ReferenceRender {
 
   /// A round of paths. If it is stopped, the tiles that are done are remembered, and the next call does the others.
   void tracePaths() {
-    if (!passes_.planned()) steering_.planRound(passes_);
+    if (!passes_.planned()) {
+      steering_.planRound(passes_);
+      if (rates_) steering_.chooseRates(*rates_);
+    }
     if (gather_ && batches_done_ > 0 && !gathered_.holds(batches_done_ - 1))
       gathered_.take(*photon_batch_, batches_done_ - 1);
     const bool something = samples_done_ > 0;
-    std::atomic<std::uint64_t> rays{0}, not_finite{0};
+    std::atomic<std::uint64_t> rays{0}, work{0}, not_finite{0};
     passes_.run(
         [&](int x, int y, std::uint32_t sample) {
           PathCounters counters;
-          if (path_needs_.eyeTraced(!vcm_)) path_tracer_.tracePath(x, y, sample, film_, counters);
+          if (path_needs_.eyeTraced(!vcm_)) traceEyePath(x, y, sample, counters);
           if (vcm_) vcm_->tracePath(x, y, sample, film_, counters);
           rays.fetch_add(counters.rays, std::memory_order_relaxed);
+          work.fetch_add(counters.work(), std::memory_order_relaxed);
           if (counters.not_finite > 0) not_finite.fetch_add(counters.not_finite, std::memory_order_relaxed);
-          return counters.rays;
+          return counters.work();
         },
         [&] { return stopped() && something; });
-    path_rays_ += rays, not_finite_ += not_finite;
+    path_rays_ += rays, path_work_ += work, not_finite_ += not_finite;
     if (passes_.planned()) return;
     ++samples_done_;
     steering_.takePaths(passes_, gather_ && photonsLeft());
+  }
+  void traceEyePath(int x, int y, std::uint32_t sample, PathCounters& counters) {
+    if (!rates_) return path_tracer_.tracePath(x, y, sample, film_, counters);
+    const std::size_t tile = passes_.tiles().tileOf(x, y);
+    PartTally parts;
+    counters.parts = &parts;
+    path_tracer_.tracePath(x, y, sample, film_, counters, rates_->of(tile));
+    rates_->note(tile, passes_.tiles().pixelOf(x, y), parts);
   }
   void tracePhotons() {
     if (vcm_) vcm_->prepareBatch(batches_done_);
@@ -341,9 +355,10 @@ class ReferenceRender {
     film_.visitPlanes([&](FilmPlane& plane) { state.values(plane.values()); });
     steering_.visitState(state);
     passes_.visitState(state);
+    if (rates_) rates_->visitState(state);
     for (Ledger& ledger : ledgers_) ledger.visitState(state);
     for (std::uint64_t* count : {&samples_done_, &photons_done_, &batches_done_, &samples_at_photons_, &path_rays_,
-                                 &light_rays_, &not_finite_})
+                                 &path_work_, &light_rays_, &not_finite_})
       state.value(*count);
     gathered_.visitState(state);
     for (double* number : {&path_seconds_, &light_seconds_}) state.value(*number);
@@ -540,10 +555,11 @@ class ReferenceRender {
   std::vector<Layer> geometry_;
   std::vector<StageTime> stages_;
   EyePasses passes_;
+  std::optional<PathRates> rates_;
   bool gather_ = false;
   GatheredPhotons gathered_;
   std::uint64_t samples_budget_ = 0, photons_budget_ = 0, samples_done_ = 0, photons_done_ = 0, batches_done_ = 0;
-  std::uint64_t path_rays_ = 0, light_rays_ = 0, not_finite_ = 0;
+  std::uint64_t path_rays_ = 0, path_work_ = 0, light_rays_ = 0, not_finite_ = 0;
   std::uint64_t samples_at_photons_ = 0;
   std::uint32_t batch_photons_ = 0;  ///< asked of a batch
   double path_seconds_ = 0, light_seconds_ = 0;

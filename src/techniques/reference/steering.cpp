@@ -94,11 +94,15 @@ bool Steering::photonsPay(std::uint64_t path_rays, std::uint64_t light_rays) con
          (error_.error.from_eye - gathered) * static_cast<double>(light_rays);
 }
 
+void Steering::chooseRates(PathRates& rates) const {
+  if (error_.layer == "beauty") rates.choose(pass_variances_, errors_.relativeScales(error_.layer));
+}
+
 void Steering::planRound(EyePasses& passes) const {
   if (pass_variances_.empty())
     passes.planAll();
   else
-    passes.planWhereItPays(pass_variances_, static_cast<std::uint32_t>(kMostBatchPasses));
+    passes.planWhereItPays(pass_variances_);
 }
 
 }  // namespace nephroid

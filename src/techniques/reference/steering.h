@@ -11,6 +11,7 @@
 #include "techniques/reference/eye_passes.h"
 #include "techniques/reference/film.h"
 #include "techniques/reference/gather_probe.h"
+#include "techniques/reference/path_rates.h"
 #include "techniques/technique.h"
 
 namespace nephroid {
@@ -68,6 +69,8 @@ class Steering {
   /// Rays, not seconds: equal renders must take equal steps.
   bool photonsPay(std::uint64_t path_rays, std::uint64_t light_rays) const;
   void planRound(EyePasses& passes) const;
+  /// What it knows of the layer that steers is for `rates` as well.
+  void chooseRates(PathRates& rates) const;
 
   template <class State>
   void visitState(State& state) {
