@@ -34,8 +34,8 @@ struct Continuation {
   float into(const PathClass& events) const { return probability[PathPart::of(events)]; }
 };
 
-/// What paths brought and cost, by PathPart, about as if they had always gone on: those that weigh more, as they went on
-/// seldom, are split for longer at glass, which counts up to half more rays of the later parts.
+/// What paths brought and cost, by PathPart, about as if they had always gone on: those that weigh more, as they went
+/// on seldom, are split for longer at glass, which counts up to half more rays of the later parts.
 struct PartTally {
   std::array<double, PathPart::kCount> squares{};  ///< Σ of squared radiance, over contributions and channels
   std::array<double, PathPart::kCount> rays{};
