@@ -51,12 +51,7 @@ class SmallRender {
       if (scale <= 0.0) continue;
       const dvec3 of_mean = from_eye_.varianceOfMeanAt(pixel);
       variance += kPasses * kPasses * (of_mean.x + of_mean.y + of_mean.z) / scale;
-      for (std::size_t part = 0; part < PathPart::kCount; ++part) {
-        sum.squares[part] += parts_[pixel].squares[part] / scale;
-        sum.rays[part] += parts_[pixel].rays[part];
-      }
-      sum.lesser_squares += parts_[pixel].lesser_squares / scale;
-      sum.lesser_rays += parts_[pixel].lesser_rays;
+      sum.add(parts_[pixel], 1.0 / scale, 1.0);
     }
     return chooseContinuation(sum, variance);
   }

@@ -82,15 +82,15 @@ bool Steering::mayGatherOn(std::uint64_t rounds_of_batch, std::uint64_t rounds) 
   return isKnown() && rounds_of_batch < std::max(batch_passes_, rounds / kBatchShare);
 }
 
-bool Steering::ungatheredPhotonsPay(std::uint64_t path_rays, std::uint64_t light_rays) const {
+bool Steering::ungatheredPhotonsPay(std::uint64_t path_work, std::uint64_t light_rays) const {
   // Not where both are 0, as in a picture that is still black: then paths may find something.
-  return isKnown() && error_.error.from_lights * static_cast<double>(path_rays) >
+  return isKnown() && error_.error.from_lights * static_cast<double>(path_work) >
                           error_.error.from_eye * static_cast<double>(light_rays);
 }
 
-bool Steering::photonsPay(std::uint64_t path_rays, std::uint64_t light_rays) const {
+bool Steering::photonsPay(std::uint64_t path_work, std::uint64_t light_rays) const {
   const double gathered = probe_ ? error_.error.from_eye * probe_->photonsShare() : 0.0;
-  return (error_.error.from_lights + gathered) * static_cast<double>(path_rays) >=
+  return (error_.error.from_lights + gathered) * static_cast<double>(path_work) >=
          (error_.error.from_eye - gathered) * static_cast<double>(light_rays);
 }
 

@@ -61,13 +61,13 @@ class Steering {
   /// so that there are batches enough to know the error by.
   bool mayGatherOn(std::uint64_t rounds_of_batch, std::uint64_t rounds) const;
   /// Do photons lessen the error more than paths that gather the latest batch would, even if no path gathers it?
-  bool ungatheredPhotonsPay(std::uint64_t path_rays, std::uint64_t light_rays) const;
+  bool ungatheredPhotonsPay(std::uint64_t path_work, std::uint64_t light_rays) const;
   /// Have so few rounds gathered them that more are due, whatever pays? Until errors are known several: the noise of
   /// paths themselves is what rounds of one batch differ by.
   bool mustGatherOn(std::uint64_t rounds_of_batch) const { return rounds_of_batch < (isKnown() ? 1 : batch_passes_); }
   /// Do photons lessen the error more by another ray? A variance falls by its share per pass, and a pass costs rays.
-  /// Rays, not seconds: equal renders must take equal steps.
-  bool photonsPay(std::uint64_t path_rays, std::uint64_t light_rays) const;
+  /// Rays, not seconds: equal renders must take equal steps. @param path_work  of all paths, see PathCounters
+  bool photonsPay(std::uint64_t path_work, std::uint64_t light_rays) const;
   void planRound(EyePasses& passes) const;
   /// What it knows of the layer that steers is for `rates` as well.
   void chooseRates(PathRates& rates) const;
