@@ -14,7 +14,7 @@
 #include <vector>
 
 #include "core/math.h"
-#include "trace/photon_grid.h"
+#include "trace/cell_hash.h"
 
 namespace nephroid {
 

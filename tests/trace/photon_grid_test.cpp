@@ -32,17 +32,6 @@ TEST(PhotonGrid, FindsExactlyThePhotonsWithinTheRadius) {
   }
 }
 
-TEST(HashOfCell, TellsCellsOfAFloorAboutTheOriginApart) {
-  constexpr int kReach = 200;
-  std::vector<std::uint32_t> hashes;
-  for (int x = -kReach; x < kReach; ++x)
-    for (int z = -kReach; z < kReach; ++z) hashes.push_back(hashOfCell(x, 0, z));
-  const std::size_t cells = hashes.size();
-  std::sort(hashes.begin(), hashes.end());
-  hashes.erase(std::unique(hashes.begin(), hashes.end()), hashes.end());
-  EXPECT_GT(hashes.size(), cells - cells / 100);
-}
-
 TEST(PhotonGrid, OfNothingFindsNothing) {
   const PhotonGrid grid({}, 1.0F);
   grid.visitNear(vec3(0), [](const GridPhoton&) { FAIL(); });
