@@ -13,6 +13,9 @@ namespace {
 /// Photons of a batch for each of the pilot: what is learned from fewer is mostly noise, and more cost more than they
 /// gain.
 constexpr std::uint32_t kPhotonsPerPilot = 16;
+/// Where they need only tell blocks whose photons are of use from others, so many times as many: with blocks that need
+/// no smoothing a guide is sharper. Such renders are long.
+constexpr std::uint32_t kPilotsToPlaces = 4;
 /// A pilot is not worth its time, and knows too little, below this.
 constexpr std::uint32_t kFewestPilots = 2048;
 /// Photons of one task.
@@ -21,6 +24,9 @@ constexpr std::uint32_t kChunkPhotons = 256;
 constexpr int kTilePixels = 8;
 /// Darker than this share of the mean, an error counts by what it is and not by what is there.
 constexpr double kFloor = 0.1;
+/// Photons that guiding must bring where they are of use, over those that come there anyway: guided and even ones side
+/// by side are less evenly spread than even ones alone.
+constexpr double kLeastGain = 1.25;
 /// Passes of smoothing: over tiles, and over the blocks of a guide, each of which few photons of the pilot began in.
 constexpr int kTilePasses = 1, kBlockPasses = 2;
 /// Random numbers of their own: streams of pixels, lights and of the footprints' pilot lie elsewhere.
@@ -35,6 +41,7 @@ struct Landing {
 struct PilotPhoton {
   std::size_t block = 0;  ///< of the guide
   std::vector<Landing> landings;
+  std::vector<vec3> deposits;  ///< where it may be gathered
 };
 
 std::size_t blockAt(vec2 place) {
@@ -60,6 +67,7 @@ PilotPhoton tracePilotPhoton(const LightTracer& tracer, std::size_t emitter, Sam
   for (const Splat& splat : tally.splats) result.landings.push_back({splat.pixel, luminance(splat.radiance), 1.0});
   for (const FootprintSplat& f : tally.footprints)
     result.landings.push_back({f.splat.pixel, luminance(f.splat.radiance), concentrationOf(f)});
+  for (const GridPhoton& deposit : tally.caustic_deposits) result.deposits.push_back(deposit.position);
   return result;
 }
 
@@ -146,6 +154,13 @@ class RoughPicture {
   double mean_ = 0.0;
 };
 
+/// @param moments  by block, mean squares
+EmissionGuide guideBySquares(const Plane& moments, float guided) {
+  std::vector<float> weights;
+  for (const double moment : moments.values) weights.push_back(static_cast<float>(std::sqrt(moment)));
+  return EmissionGuide(weights, 1.0F - guided);
+}
+
 EmissionGuide learn(const std::vector<PilotPhoton>& photons, RoughPicture& picture, float guided) {
   Plane moments(EmissionGuide::kSide, EmissionGuide::kSide);
   for (const PilotPhoton& photon : photons)
@@ -153,35 +168,44 @@ EmissionGuide learn(const std::vector<PilotPhoton>& photons, RoughPicture& pictu
       moments.values[photon.block] +=
           picture.weightOf(landing.pixel) * landing.radiance * landing.radiance * landing.concentration;
   for (int pass = 0; pass < kBlockPasses; ++pass) moments.smooth();
-  std::vector<float> weights;
-  for (const double moment : moments.values) weights.push_back(static_cast<float>(std::sqrt(moment)));
-  return EmissionGuide(weights, 1.0F - guided);
+  return guideBySquares(moments, guided);
 }
 
-GuidedLight describe(const Emitter& emitter, const std::vector<PilotPhoton>& photons, const EmissionGuide& guide) {
+bool isSeen(const PilotPhoton& photon) { return !photon.landings.empty(); }
+
+/// @param is_of_use  by photon
+template <class IsOfUse>
+GuidedLight describe(const Emitter& emitter, const std::vector<PilotPhoton>& photons, const EmissionGuide& guide,
+                     const IsOfUse& is_of_use) {
   GuidedLight light{emitter.name(), 0.0, 0.0};
   const double share = 1.0 / static_cast<double>(photons.size());
   for (const PilotPhoton& photon : photons) {
-    if (photon.landings.empty()) continue;
+    if (!is_of_use(photon)) continue;
     light.seen_even += share;
     light.seen_guided += share * guide.densityOfBlock(photon.block);
   }
   return light;
 }
 
+/// Photons of a light's pilot; 0: it is not worth one.
+std::uint32_t countPilot(const LightTracer& tracer, std::size_t emitter, const GuideRequest& request) {
+  const std::uint32_t count = request.photons[emitter] / kPhotonsPerPilot;
+  const bool pays = request.guided > 0.0F && count >= kFewestPilots && tracer.emitters()[emitter]->canBeGuided();
+  return pays ? count : 0;
+}
+
 }  // namespace
 
 ParamSpec makeGuidingParam() {
-  return {
-      "guiding",
-      0.7F,
-      0.0,
-      0.9,
-      "",
-      "share of the photons of suns, points and spots that go where a pilot found that they lessen the error of "
-      "caustics most; the others are emitted evenly. Only for estimators light and footprint, where caustics are all "
-      "that photons are asked for, and there are enough of them. 0: paths from the eye are not guided either",
-      {}};
+  return {"guiding",
+          0.7F,
+          0.0,
+          0.9,
+          "",
+          "share of the photons of suns, points and spots that go where a pilot found that they lessen the error of "
+          "caustics most, or, where photons are gathered, that they end near places where that is done; the others are "
+          "emitted evenly. Only where there are enough of them. 0: paths from the eye are not guided either",
+          {}};
 }
 
 bool paysToGuide(Estimator estimator, const LayerNeeds& needs) {
@@ -195,8 +219,8 @@ std::vector<GuidedLight> guideEmission(const ReferenceWorld& world, LightTracer&
   std::vector<std::vector<PilotPhoton>> pilots(request.photons.size());
   RoughPicture picture(world.camera_model.width(), world.camera_model.height());
   for (std::size_t e = 0; e < pilots.size(); ++e) {
-    const std::uint32_t count = request.photons[e] / kPhotonsPerPilot;
-    if (request.guided <= 0.0F || count < kFewestPilots || !tracer.emitters()[e]->canBeGuided()) continue;
+    const std::uint32_t count = countPilot(tracer, e, request);
+    if (count == 0) continue;
     const FootprintScale spread = request.overlaps.empty()
                                       ? FootprintScale{}
                                       : tracer.scaleFootprints(request.overlaps[e], request.photons[e], 0);
@@ -210,7 +234,30 @@ std::vector<GuidedLight> guideEmission(const ReferenceWorld& world, LightTracer&
   for (std::size_t e = 0; e < pilots.size(); ++e) {
     if (pilots[e].empty()) continue;
     const EmissionGuide guide = learn(pilots[e], picture, request.guided);
-    lights.push_back(describe(*tracer.emitters()[e], pilots[e], guide));
+    lights.push_back(describe(*tracer.emitters()[e], pilots[e], guide, isSeen));
+    tracer.guide(e, guide);
+  }
+  return lights;
+}
+
+std::vector<GuidedLight> guideToPlaces(const ReferenceWorld& world, LightTracer& tracer, const GuideRequest& request,
+                                       const GatherPlaces& places) {
+  const auto is_of_use = [&](const PilotPhoton& photon) {
+    return isSeen(photon) || std::any_of(photon.deposits.begin(), photon.deposits.end(),
+                                         [&](vec3 position) { return places.isNear(position); });
+  };
+  std::vector<GuidedLight> lights;
+  for (std::size_t e = 0; e < request.photons.size(); ++e) {
+    const std::uint32_t count = kPilotsToPlaces * countPilot(tracer, e, request);
+    if (count == 0) continue;
+    const std::vector<PilotPhoton> photons = tracePilot(tracer, e, count, FootprintScale{}, world.options.seed);
+    Plane moments(EmissionGuide::kSide, EmissionGuide::kSide);
+    for (const PilotPhoton& photon : photons)
+      if (is_of_use(photon)) moments.values[photon.block] += 1.0;
+    const EmissionGuide guide = guideBySquares(moments, request.guided);
+    const GuidedLight light = describe(*tracer.emitters()[e], photons, guide, is_of_use);
+    if (light.seen_guided <= kLeastGain * light.seen_even) continue;
+    lights.push_back(light);
     tracer.guide(e, guide);
   }
   return lights;

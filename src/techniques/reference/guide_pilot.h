@@ -7,7 +7,9 @@
 // pixel and Ī its mean, stands between the squared error (w = 1) and the squared relative one (w = 1 / I²): each of
 // these alone would let the other grow.
 // I holds direct light as well, under which noise is seen less.
-// Limits: what caustics light in turn, and what is seen of them in mirrors or through glass, is not learned.
+// Where photons are gathered, kernels are the narrower the more photons there are: v² is the same for all that end
+// where paths gather, and blur is what guiding lessens. Limits: what caustics light in turn is not learned, nor, but
+// where photons are gathered, what is seen of them in mirrors or through glass.
 #pragma once
 
 #include <cstdint>
@@ -17,6 +19,7 @@
 #include "core/params.h"
 #include "techniques/reference/estimator.h"
 #include "techniques/reference/film.h"
+#include "techniques/reference/gather_places.h"
 #include "techniques/reference/light_tracer.h"
 
 namespace nephroid {
@@ -36,12 +39,17 @@ struct GuideRequest {
 /// What guiding does to one light.
 struct GuidedLight {
   std::string name;
-  double seen_even, seen_guided;  ///< shares of photons that add something to the picture, by the pilot
+  double seen_even, seen_guided;  ///< shares of photons that add something to the picture, or may, by the pilot
 };
 
 /// Guides the emitters that can be guided and have photons enough to pay for a pilot. Deterministic, whatever the
 /// threads. @pre emission is even
 std::vector<GuidedLight> guideEmission(const ReferenceWorld& world, LightTracer& tracer, const GuideRequest& request);
+/// The same, where photons are gathered: by which share of the photons of a block ends near places where they are, or
+/// in sight. Each of those is taken for as good as the others, for kernels are the narrower the more there are.
+/// Lights most of whose photons are of use stay even.
+std::vector<GuidedLight> guideToPlaces(const ReferenceWorld& world, LightTracer& tracer, const GuideRequest& request,
+                                       const GatherPlaces& places);
 void emitEvenly(LightTracer& tracer);
 
 }  // namespace nephroid

@@ -60,7 +60,8 @@ class LightTracer {
   /// Where one photon, traced alone, is first seen to end, not normalised; nothing if it is not or has no footprint.
   std::optional<FootprintSplat> findLanding(std::size_t emitter, const PhotonWave::Photon& photon,
                                             const FootprintScale& spread) const;
-  /// What one photon, traced alone as far as its first caustic, adds to the picture; its footprints are not normalised.
+  /// What one photon, traced alone as far as its first caustic, adds to the picture, as far as caustics are connected
+  /// to the camera, and leaves to be gathered if deposits are kept; its footprints are not normalised.
   PhotonTally traceAlone(std::size_t emitter, const PhotonWave::Photon& photon, const FootprintScale& spread) const;
   /// From now on photons of an emitter leave it by this density, or evenly without one. @pre it can be guided
   void guide(std::size_t emitter, std::optional<EmissionGuide> guide) { emitters_[emitter]->guideBy(std::move(guide)); }

@@ -158,11 +158,12 @@ class EyePath {
   }
 
   void gather(const Bsdf& bsdf) {
-    if (strand_.events.count() == 0 ? gathered_.caustic : gathered_.specular_caustic && strand_.events.isEyeSpecular())
-      gatherCaustic(bsdf);
-    if (strand_.events.count() == 0 ? gathered_.indirect
-                                    : gathered_.specular_indirect && strand_.events.isEyeSpecular())
-      gatherIndirect(bsdf);
+    const bool is_first = strand_.events.count() == 0, behind = strand_.events.isEyeSpecular();
+    const bool caustic = is_first ? gathered_.caustic : gathered_.specular_caustic && behind;
+    const bool indirect = is_first ? gathered_.indirect : gathered_.specular_indirect && behind;
+    if (caustic && counters_.gather_places) counters_.gather_places->push_back(encounter_.point.position);
+    if (caustic) gatherCaustic(bsdf);
+    if (indirect) gatherIndirect(bsdf);
   }
 
   /// What kernels about a point say of it.

@@ -32,6 +32,7 @@ struct PathCounters {
   // Filled if there:
   PartTally* parts = nullptr;
   std::vector<DirectionLesson>* lessons = nullptr;  ///< one for each way on from a path's first diffuse surface
+  std::vector<vec3>* gather_places = nullptr;       ///< where photons were gathered, world, m
 
   /// How long it took, in rays: five kernels take as long as one, measured on `seabed`, `pool` and `wave`. Counted and
   /// not timed, for equal renders must take equal steps.

@@ -20,6 +20,7 @@
 #include "techniques/reference/continuation_pilot.h"
 #include "techniques/reference/direction_pilot.h"
 #include "techniques/reference/estimator.h"
+#include "techniques/reference/gather_places.h"
 #include "techniques/reference/geometry_layers.h"
 #include "techniques/reference/guide_pilot.h"
 #include "techniques/reference/path_tracer.h"
@@ -204,10 +205,20 @@ class ReferenceRender {
     emitEvenly(*light_tracer_);
     if (choice_.caustic == Estimator::kFootprint && needs_.lightTraced())
       footprints_.apply(world_, *light_tracer_, *photon_batch_);
-    if (paysToGuide(choice_.caustic, needs_))
-      guided_ = guideEmission(world_, *light_tracer_,
-                              {photon_batch_->shares(), footprints_.overlaps, settings_.params.getFloat("guiding")});
+    guide();
     if (vcm_) vcm_->begin(*photon_batch_, settings_.width, settings_.height);
+  }
+
+  void guide() {
+    constexpr std::uint64_t kFewestPaths = 1'000'000;
+    const GuideRequest request{photon_batch_->shares(), footprints_.overlaps, settings_.params.getFloat("guiding")};
+    if (paysToGuide(choice_.caustic, needs_)) {
+      guided_ = guideEmission(world_, *light_tracer_, request);
+    } else if (gather_ && request.guided > 0.0F && samples_budget_ > kFewestPaths / passes_.tiles().pixels()) {
+      // Once: what later is learned of paths must not change where they are thought to end.
+      if (!places_) places_.emplace(world_, camera_, settings_.width, settings_.height, path_tracer_, path_needs_);
+      guided_ = guideToPlaces(world_, *light_tracer_, request, *places_);
+    }
   }
 
   bool stopped() const { return stop_ && stop_->requested(); }
@@ -244,6 +255,8 @@ class ReferenceRender {
   bool photonsAreNext() const {
     if (vcm_) return batches_done_ < vcm_->batchesFor(samples_done_ + 1);
     if (!photonsLeft() || !samplesLeft()) return photonsLeft();
+    // A round that was stopped goes on with the photons that it began with.
+    if (passes_.planned()) return false;
     // What is gathered must have been emitted; otherwise the picture comes first.
     if (samples_done_ == 0) return gather_ && photons_done_ == 0;
     if (photons_done_ == 0) return true;
@@ -548,6 +561,7 @@ class ReferenceRender {
   std::unique_ptr<LightTracer> light_tracer_;
   std::unique_ptr<Manifold> manifold_;
   FootprintSpread footprints_;
+  std::optional<GatherPlaces> places_;
   std::vector<GuidedLight> guided_;
   std::unique_ptr<PhotonBatch> photon_batch_;
   std::unique_ptr<Vcm> vcm_;
