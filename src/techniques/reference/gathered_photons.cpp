@@ -20,6 +20,8 @@ constexpr double kRadiusAlpha = 2.0 / 3.0;
 constexpr double kWholeBatches = 64.0;
 /// Kernels at most, and at least, over one that suits the map as a whole.
 constexpr float kWidest = 3.0F, kNarrowest = 0.25F;
+/// Kernels of caustics at least, over one that would suit photons spread evenly: a focus may be a point.
+constexpr float kNarrowestOfEven = 1.0F / 64.0F;
 
 using Deposits = std::vector<GridPhoton> PhotonTally::*;
 
@@ -53,9 +55,9 @@ void GatheredPhotons::Map::retake(const std::vector<GridPhoton>& photons, std::u
 }
 
 std::optional<KernelRadii> GatheredPhotons::Map::radiiBy(const std::vector<GridPhoton>& photons) const {
-  const float radius = choose_radius(photons, expected);
-  if (radius <= 0.0F) return std::nullopt;
-  return KernelRadii(photons, expected, kNarrowest * radius, kWidest * radius);
+  const RadiusRange range = choose_range(photons, expected);
+  if (range.narrowest <= 0.0F) return std::nullopt;
+  return KernelRadii(photons, expected, range.narrowest, range.widest);
 }
 
 void GatheredPhotons::Map::spread(const std::vector<GridPhoton>& photons, float scale) {
@@ -63,8 +65,8 @@ void GatheredPhotons::Map::spread(const std::vector<GridPhoton>& photons, float 
 }
 
 GatheredPhotons::GatheredPhotons() {
-  caustics_.expected = kCausticPhotons, caustics_.choose_radius = chooseGatherRadius;
-  indirect_.expected = kIndirectPhotons, indirect_.choose_radius = chooseTypicalRadius;
+  caustics_.expected = kCausticPhotons, caustics_.choose_range = chooseRangeOfCaustics;
+  indirect_.expected = kIndirectPhotons, indirect_.choose_range = chooseRangeOfIndirect;
 }
 
 void GatheredPhotons::take(const PhotonBatch& batch, std::uint64_t batch_index) {
@@ -93,6 +95,16 @@ std::vector<std::uint64_t> GatheredPhotons::batchesToRetake() const {
       if (batch != kUndecided) batches.insert(batch);
   if (taken_ > 0) batches.insert(latest_);
   return {batches.begin(), batches.end()};
+}
+
+RadiusRange chooseRangeOfCaustics(std::span<const GridPhoton> photons, float expected) {
+  const float even = chooseGatherRadius(photons, expected), typical = chooseTypicalRadius(photons, expected);
+  return {.narrowest = std::clamp(typical, kNarrowestOfEven * even, kNarrowest * even), .widest = kWidest * even};
+}
+
+RadiusRange chooseRangeOfIndirect(std::span<const GridPhoton> photons, float expected) {
+  const float radius = chooseTypicalRadius(photons, expected);
+  return {.narrowest = kNarrowest * radius, .widest = kWidest * radius};
 }
 
 float shrinkAreas(std::uint64_t batch) {

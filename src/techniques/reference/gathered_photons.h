@@ -17,6 +17,16 @@
 
 namespace nephroid {
 
+/// Of kernels, m; 0 if there are too few photons to tell.
+struct RadiusRange {
+  float narrowest = 0.0F, widest = 0.0F;
+};
+/// Of a caustic, most of whose photons may be in a focus that is far smaller than all that it lights.
+/// @param expected  photons under a kernel
+RadiusRange chooseRangeOfCaustics(std::span<const GridPhoton> photons, float expected);
+/// Of what caustics light.
+RadiusRange chooseRangeOfIndirect(std::span<const GridPhoton> photons, float expected);
+
 class GatheredPhotons {
  public:
   GatheredPhotons();
@@ -47,7 +57,7 @@ class GatheredPhotons {
   static constexpr std::uint64_t kUndecided = ~std::uint64_t{0};
   struct Map {
     float expected = 0.0F;  ///< photons under a kernel
-    float (*choose_radius)(std::span<const GridPhoton> photons, float expected) = nullptr;
+    RadiusRange (*choose_range)(std::span<const GridPhoton> photons, float expected) = nullptr;
     KernelRadii radii, next_radii;
     std::uint64_t decided_by = kUndecided, next_by = kUndecided;  ///< the batches that these two are by
     KernelMap kernels;

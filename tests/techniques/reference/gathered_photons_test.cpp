@@ -48,6 +48,25 @@ TEST(ChooseTypicalRadius, OfFewPhotonsReachesThemAll) {
   EXPECT_EQ(chooseTypicalRadius({}, 10), 0.0F);
 }
 
+TEST(ChooseRangeOfCaustics, ReachesFromAFocusToAllThatIsLit) {
+  // Three photons in four are in a focus of 10 cm, the others on the 4 m around it.
+  std::vector<GridPhoton> photons = makePlate(15'000, 0.1F, 4);
+  for (const GridPhoton& around : makePlate(5000, 4.0F, 5)) photons.push_back(around);
+  const RadiusRange range = chooseRangeOfCaustics(photons, 15);
+  const auto suitable = [](float side, float count) { return side * std::sqrt(15.0F / (kPi * count)); };
+  EXPECT_LE(range.narrowest, 1.2F * suitable(0.1F, 15'000.0F));
+  EXPECT_GE(range.widest, suitable(4.0F, 5000.0F));
+  // But not to nothing, if the focus is a point.
+  for (GridPhoton& photon : photons)
+    if (length(photon.position) < 0.1F) photon.position = vec3(0.0F);
+  EXPECT_GT(chooseRangeOfCaustics(photons, 15).narrowest, 0.0005F);
+}
+
+TEST(ChooseRangeOfCaustics, OfTooFewPhotonsIsNone) {
+  EXPECT_EQ(chooseRangeOfCaustics({}, 15).narrowest, 0.0F);
+  EXPECT_EQ(chooseRangeOfIndirect({}, 15).narrowest, 0.0F);
+}
+
 TEST(ShrinkAreas, IsTheProductOfTheStepsBefore) {
   double product = 1.0;
   for (std::uint64_t batch = 0; batch < 400; ++batch) {
