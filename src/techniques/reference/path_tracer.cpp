@@ -29,6 +29,10 @@ constexpr std::uint32_t kSplitSeedOffset = 0x73747261U;
 constexpr std::uint32_t kDiffuseStrands = 4;
 /// They draw their numbers from one sequence, as neighbours in it, so that they are spread evenly.
 constexpr std::uint32_t kDiffuseSeedOffset = 0x64696666U;
+/// Where nothing beyond the first diffuse surface is asked for, shadow rays from there are what the path is made of,
+/// and cost less than a path of their own each.
+constexpr std::uint32_t kLightSamples = 4;
+constexpr std::uint32_t kLightSeedOffset = 0x6C616D70U;
 /// Where directions were learned, half of them are drawn by those, spread evenly on their own.
 constexpr std::uint32_t kGuidedStrands = kDiffuseStrands / 2;
 constexpr std::uint32_t kGuidedSeedOffset = 0x67756964U;
@@ -53,9 +57,10 @@ struct Strand {
   vec3 vertex{0.0F};                 ///< of the last event, or the eye
   bool previous_is_delta = true;
   float previous_pdf = 0.0F;
-  bool by_lesser_way = false;  ///< came by one at clear glass
-  std::int64_t lesson = -1;    ///< that tells of the strand; −1: none
-  float lesson_scale = 0.0F;   ///< from radiance in the pixel to what came by the way of the lesson
+  float previous_light_samples = 1.0F;  ///< that were drawn there for each way on
+  bool by_lesser_way = false;           ///< came by one at clear glass
+  std::int64_t lesson = -1;             ///< that tells of the strand; −1: none
+  float lesson_scale = 0.0F;            ///< from radiance in the pixel to what came by the way of the lesson
 };
 
 /// One path on its way from the eye, with all of its strands.
@@ -135,7 +140,9 @@ class EyePath {
   }
 
   void addMet(const LightSet::Met& met) {
-    const float weight = strand_.previous_is_delta ? 1.0F : powerHeuristic(strand_.previous_pdf, met.pdf);
+    const float weight = strand_.previous_is_delta
+                             ? 1.0F
+                             : powerHeuristic(strand_.previous_pdf, strand_.previous_light_samples * met.pdf);
     add(strand_.events, strand_.throughput * met.radiance * weight,
         strand_.irradiance_throughput * met.radiance * weight);
   }
@@ -151,7 +158,7 @@ class EyePath {
     lobe_ = guide_ && bsdf.hasDiffuse() && strand_.events.diffuseCount() == 0 ? guide_->at(encounter_.point.position)
                                                                               : nullptr;
     for (const EventClass c : {EventClass::kSpecular, EventClass::kDiffuse})
-      if (bsdf.isEvaluable(c) && isWanted(strand_.events.with(c))) connectToLight(bsdf, c);
+      if (bsdf.isEvaluable(c) && isWanted(strand_.events.with(c))) connectToLights(bsdf, c);
     if (photons_ && bsdf.hasDiffuse()) gather(bsdf);
     if (manifold_ && bsdf.hasDiffuse() && wantsWalk()) walkToLight(bsdf);
     return sampleNext(bsdf);
@@ -254,9 +261,23 @@ class EyePath {
     return mayContribute(c) || c.layer() == PathLayer::kDirect;
   }
 
-  void connectToLight(const Bsdf& bsdf, EventClass c) {
-    const float u_choice = strand_.sampler.next1D();
-    const auto light = world_.lights.sample(encounter_.point.position, u_choice, strand_.sampler.next2D());
+  /// Of the surface met last, for each class.
+  std::uint32_t lightSamples() const {
+    return strand_.events.count() == 0 && needs_.direct && !needs_.beyondDiffuse() ? kLightSamples : 1;
+  }
+  void connectToLights(const Bsdf& bsdf, EventClass c) {
+    const std::uint32_t samples = lightSamples();
+    if (samples == 1) return connectToLight(bsdf, c, strand_.sampler, samples);
+    for (std::uint32_t i = 0; i < samples; ++i) {
+      Sampler sampler(world_.options.seed + kLightSeedOffset, static_cast<std::uint32_t>(pixel_),
+                      sample_ * samples + i);
+      connectToLight(bsdf, c, sampler, samples);
+    }
+  }
+  /// @param samples  of which it is one
+  void connectToLight(const Bsdf& bsdf, EventClass c, Sampler& sampler, std::uint32_t samples) {
+    const float u_choice = sampler.next1D();
+    const auto light = world_.lights.sample(encounter_.point.position, u_choice, sampler.next2D());
     if (!light) return;
     const BsdfValue value = bsdf.evaluate(c, light->dir, Transport::kRadiance);
     const float cos_theta = std::abs(dot(light->dir, bsdf.normal()));
@@ -268,8 +289,10 @@ class EyePath {
     if (maxComponent(visible) <= 0.0F) return;
     const float p_class = c == EventClass::kSpecular ? bsdf.specularProbability() : 1.0F - bsdf.specularProbability();
     const float pdf = light->delta || c == EventClass::kSpecular ? value.pdf : guided(bsdf).pdf(light->dir, value.pdf);
-    const float weight = light->delta ? 1.0F : powerHeuristic(light->pdf, p_class * pdf);
-    const vec3 incident = visible * light->radiance * (cos_theta * weight / light->pdf);
+    // Density of all samples together.
+    const float light_pdf = light->pdf * static_cast<float>(samples);
+    const float weight = light->delta ? 1.0F : powerHeuristic(light_pdf, p_class * pdf);
+    const vec3 incident = visible * light->radiance * (cos_theta * weight / light_pdf);
     const PathClass path = strand_.events.with(c);
     const vec3 irradiance = path.count() == 1 ? incident : strand_.irradiance_throughput * value.f * incident;
     add(path, strand_.throughput * value.f * incident, irradiance);
@@ -395,6 +418,7 @@ class EyePath {
     strand_.throughput *= s.weight / p_class;
     strand_.irradiance_throughput *= s.weight / p_class;
     if (!s.pass) {
+      strand_.previous_light_samples = static_cast<float>(lightSamples());
       if (!recordEvent(bsdf, c, s, p_class)) return false;
       strand_.vertex = encounter_.point.position;
       strand_.previous_is_delta = s.delta;

@@ -293,6 +293,39 @@ TEST(Reference, LayersAskedForAloneAreThoseOfAWholeRender) {
   EXPECT_NEAR(test::meanOf(direct.image.layers[0].image).x, 0.6, 0.002);
 }
 
+TEST(Reference, DirectLightAloneHasTheSameMeanAndLessNoise) {
+  // The penumbra of a ball under a lamp. With `indirect` paths have one shadow ray at the floor, without it several.
+  SceneData scene = test::makeBallScene(makeDiffuse(vec3(0.6F)), 64);
+  scene.lights.push_back(test::makePoint(vec3(-0.5F, 5.0F, 0.3F), vec3(50.0F), 0.8F));
+  scene.lights.push_back(test::makeSun(vec3(0.3F, -1, 0.1F), vec3(1.0F), 4.0F));
+  struct Direct {
+    double mean = 0.0, variance = 0.0;
+  };
+  const auto measure = [&](const std::vector<std::string>& layers) {
+    constexpr int kSize = 32, kRenders = 16;
+    std::vector<double> sums(kSize * kSize, 0.0), squares(sums);
+    for (int seed = 1; seed <= kRenders; ++seed) {
+      RenderSettings settings = makeSettings(kSize, 4, 1, layers);
+      settings.seed = static_cast<std::uint64_t>(seed);
+      const RenderResult render = renderReference(scene, lookFromAbove(), settings);
+      for (std::size_t p = 0; p < sums.size(); ++p) {
+        const double value = render.image.find("direct")->pixels[3 * p];
+        sums[p] += value / kRenders, squares[p] += value * value / kRenders;
+      }
+    }
+    Direct direct;
+    for (std::size_t p = 0; p < sums.size(); ++p) {
+      direct.mean += sums[p] / (kSize * kSize);
+      direct.variance += (squares[p] - sums[p] * sums[p]) / (kSize * kSize);
+    }
+    return direct;
+  };
+  const Direct alone = measure({"direct"}), with_others = measure({"direct", "indirect"});
+  const double error = std::sqrt((alone.variance + with_others.variance) / (16.0 * 32 * 32));
+  EXPECT_NEAR(alone.mean, with_others.mean, 4.0 * error);
+  EXPECT_LT(alone.variance, 0.5 * with_others.variance);
+}
+
 TEST(Reference, StopBeforeAnythingIsDoneIsInterruptedError) {
   const SceneData scene = makeLampScene(makeGlass(1.5F));
   StopToken stop;
