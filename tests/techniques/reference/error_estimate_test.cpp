@@ -179,6 +179,21 @@ TEST(ErrorEstimate, ClosesBatchesOfPhotonsInBlocksThatGrow) {
   EXPECT_EQ(errors.batches(), before + 1);
 }
 
+TEST(ErrorEstimate, ScalesSquaresByWhatIsSeen) {
+  Film film(2, 1, LayerNeeds({"direct"}));
+  ErrorEstimate errors(film, {"direct"});
+  EXPECT_TRUE(errors.relativeScales("direct").empty()) << "nothing is seen yet";
+  // Means over both passes and the channels: 2 and 0, and over the picture 1.
+  for (std::uint64_t pass = 1; pass <= 2; ++pass) {
+    film.direct.add(0, vec3(1.0F, 2.0F, 3.0F));
+    errors.closeFullEyeBatches(std::vector<std::uint64_t>{pass}, 1);
+  }
+  const std::vector<float> scales = errors.relativeScales("direct");
+  ASSERT_EQ(scales.size(), 2U);
+  EXPECT_FLOAT_EQ(scales[0], 1.0F / (4.0F + 1e-4F));
+  EXPECT_FLOAT_EQ(scales[1], 1e4F);
+}
+
 TEST(ErrorEstimate, OfOneBatchIsNotKnown) {
   const RenderResult result = renderReference(makeScene(), lookAtBall(), makeSettings(8, 1, 1000, {"direct_error"}));
   EXPECT_EQ(result.image.layers[0].image.pixels[0], std::numeric_limits<float>::infinity());

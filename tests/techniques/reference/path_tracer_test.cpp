@@ -73,6 +73,8 @@ void expectSameMeans(const Continuation& continuation, const DirectionGuide& gui
   }
 }
 
+TEST(PathCounters, CountKernelsAsAFifthOfARay) { EXPECT_EQ((PathCounters{.rays = 10, .kernels = 26}).work(), 15U); }
+
 TEST(PathTracer, GoingOnByChanceHasTheSameMean) {
   Continuation seldom;
   seldom.probability[1] = 0.3F, seldom.probability[2] = 0.5F;
