@@ -1,9 +1,9 @@
 #include "trace/cell_hash.h"
 
+#include <gtest/gtest.h>
+
 #include <algorithm>
 #include <vector>
-
-#include <gtest/gtest.h>
 
 namespace nephroid {
 namespace {

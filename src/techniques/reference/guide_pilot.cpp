@@ -42,6 +42,7 @@ struct PilotPhoton {
   std::size_t block = 0;  ///< of the guide
   std::vector<Landing> landings;
   std::vector<vec3> deposits;  ///< where it may be gathered
+  bool of_use = false;         ///< lands in sight, or where it is gathered
 };
 
 std::size_t blockAt(vec2 place) {
@@ -68,6 +69,7 @@ PilotPhoton tracePilotPhoton(const LightTracer& tracer, std::size_t emitter, Sam
   for (const FootprintSplat& f : tally.footprints)
     result.landings.push_back({f.splat.pixel, luminance(f.splat.radiance), concentrationOf(f)});
   for (const GridPhoton& deposit : tally.caustic_deposits) result.deposits.push_back(deposit.position);
+  result.of_use = !result.landings.empty();
   return result;
 }
 
@@ -171,16 +173,11 @@ EmissionGuide learn(const std::vector<PilotPhoton>& photons, RoughPicture& pictu
   return guideBySquares(moments, guided);
 }
 
-bool isSeen(const PilotPhoton& photon) { return !photon.landings.empty(); }
-
-/// @param is_of_use  by photon
-template <class IsOfUse>
-GuidedLight describe(const Emitter& emitter, const std::vector<PilotPhoton>& photons, const EmissionGuide& guide,
-                     const IsOfUse& is_of_use) {
+GuidedLight describe(const Emitter& emitter, const std::vector<PilotPhoton>& photons, const EmissionGuide& guide) {
   GuidedLight light{emitter.name(), 0.0, 0.0};
   const double share = 1.0 / static_cast<double>(photons.size());
   for (const PilotPhoton& photon : photons) {
-    if (!is_of_use(photon)) continue;
+    if (!photon.of_use) continue;
     light.seen_even += share;
     light.seen_guided += share * guide.densityOfBlock(photon.block);
   }
@@ -203,8 +200,8 @@ ParamSpec makeGuidingParam() {
           0.9,
           "",
           "share of the photons of suns, points and spots that go where a pilot found that they lessen the error of "
-          "caustics most, or, where photons are gathered, that they end near places where that is done; the others are "
-          "emitted evenly. Only where there are enough of them. 0: paths from the eye are not guided either",
+          "caustics most or, where paths gather photons, end near places where they do; the others are emitted evenly. "
+          "Only where there are enough of them. 0: paths from the eye are not guided either",
           {}};
 }
 
@@ -234,7 +231,7 @@ std::vector<GuidedLight> guideEmission(const ReferenceWorld& world, LightTracer&
   for (std::size_t e = 0; e < pilots.size(); ++e) {
     if (pilots[e].empty()) continue;
     const EmissionGuide guide = learn(pilots[e], picture, request.guided);
-    lights.push_back(describe(*tracer.emitters()[e], pilots[e], guide, isSeen));
+    lights.push_back(describe(*tracer.emitters()[e], pilots[e], guide));
     tracer.guide(e, guide);
   }
   return lights;
@@ -242,20 +239,18 @@ std::vector<GuidedLight> guideEmission(const ReferenceWorld& world, LightTracer&
 
 std::vector<GuidedLight> guideToPlaces(const ReferenceWorld& world, LightTracer& tracer, const GuideRequest& request,
                                        const GatherPlaces& places) {
-  const auto is_of_use = [&](const PilotPhoton& photon) {
-    return isSeen(photon) || std::any_of(photon.deposits.begin(), photon.deposits.end(),
-                                         [&](vec3 position) { return places.isNear(position); });
-  };
   std::vector<GuidedLight> lights;
   for (std::size_t e = 0; e < request.photons.size(); ++e) {
     const std::uint32_t count = kPilotsToPlaces * countPilot(tracer, e, request);
     if (count == 0) continue;
-    const std::vector<PilotPhoton> photons = tracePilot(tracer, e, count, FootprintScale{}, world.options.seed);
+    std::vector<PilotPhoton> photons = tracePilot(tracer, e, count, FootprintScale{}, world.options.seed);
     Plane moments(EmissionGuide::kSide, EmissionGuide::kSide);
-    for (const PilotPhoton& photon : photons)
-      if (is_of_use(photon)) moments.values[photon.block] += 1.0;
+    for (PilotPhoton& photon : photons) {
+      for (const vec3 position : photon.deposits) photon.of_use = photon.of_use || places.isNear(position);
+      if (photon.of_use) moments.values[photon.block] += 1.0;
+    }
     const EmissionGuide guide = guideBySquares(moments, request.guided);
-    const GuidedLight light = describe(*tracer.emitters()[e], photons, guide, is_of_use);
+    const GuidedLight light = describe(*tracer.emitters()[e], photons, guide);
     if (light.seen_guided <= kLeastGain * light.seen_even) continue;
     lights.push_back(light);
     tracer.guide(e, guide);

@@ -39,15 +39,15 @@ struct GuideRequest {
 /// What guiding does to one light.
 struct GuidedLight {
   std::string name;
-  double seen_even, seen_guided;  ///< shares of photons that add something to the picture, or may, by the pilot
+  double seen_even, seen_guided;  ///< shares of photons that are of use to the picture, by the pilot
 };
 
 /// Guides the emitters that can be guided and have photons enough to pay for a pilot. Deterministic, whatever the
 /// threads. @pre emission is even
 std::vector<GuidedLight> guideEmission(const ReferenceWorld& world, LightTracer& tracer, const GuideRequest& request);
-/// The same, where photons are gathered: by which share of the photons of a block ends near places where they are, or
-/// in sight. Each of those is taken for as good as the others, for kernels are the narrower the more there are.
-/// Lights most of whose photons are of use stay even.
+/// The same, where photons are gathered: by the share of a block's photons that end near places where they are, or in
+/// sight. Each of those is taken for as good as the others, for kernels are the narrower the more there are. Lights
+/// most of whose photons are of use stay even.
 std::vector<GuidedLight> guideToPlaces(const ReferenceWorld& world, LightTracer& tracer, const GuideRequest& request,
                                        const GatherPlaces& places);
 void emitEvenly(LightTracer& tracer);

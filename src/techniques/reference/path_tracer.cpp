@@ -289,7 +289,7 @@ class EyePath {
     if (maxComponent(visible) <= 0.0F) return;
     const float p_class = c == EventClass::kSpecular ? bsdf.specularProbability() : 1.0F - bsdf.specularProbability();
     const float pdf = light->delta || c == EventClass::kSpecular ? value.pdf : guided(bsdf).pdf(light->dir, value.pdf);
-    // Density of all samples together.
+    // Density of all samples together: the multi-sample model of Veach 1997, section 9.2.
     const float light_pdf = light->pdf * static_cast<float>(samples);
     const float weight = light->delta ? 1.0F : powerHeuristic(light_pdf, p_class * pdf);
     const vec3 incident = visible * light->radiance * (cos_theta * weight / light_pdf);

@@ -150,19 +150,19 @@ class ReferenceRender {
     return options;
   }
 
+  bool mayTraceMoreThan(std::uint64_t paths) const { return samples_budget_ > paths / passes_.tiles().pixels(); }
+
   /// The pilot takes 12 000 paths and 33 000 photons, which smaller renders would feel.
   bool paysToMeasureContinuation() const {
     constexpr std::uint64_t kFewestPaths = 1'000'000;
-    const std::uint64_t pixels = passes_.tiles().pixels();
-    return !vcm_ && needs_.beauty && samples_budget_ > kFewestPaths / pixels;
+    return !vcm_ && needs_.beauty && mayTraceMoreThan(kFewestPaths);
   }
 
   /// The pilot takes 128 000 paths, and 384 000 where it finds that guiding pays.
   bool paysToLearnDirections() const {
     constexpr std::uint64_t kFewestPaths = 6'000'000;
-    const std::uint64_t pixels = passes_.tiles().pixels();
     const bool wanted = settings_.params.getFloat("guiding") > 0.0F;
-    return wanted && !vcm_ && needs_.beauty && path_needs_.beyondDiffuse() && samples_budget_ > kFewestPaths / pixels;
+    return wanted && !vcm_ && needs_.beauty && path_needs_.beyondDiffuse() && mayTraceMoreThan(kFewestPaths);
   }
 
   void walkToLights() {
@@ -210,11 +210,11 @@ class ReferenceRender {
   }
 
   void guide() {
-    constexpr std::uint64_t kFewestPaths = 1'000'000;
+    constexpr std::uint64_t kFewestPaths = 1'000'000;  // for its pilot
     const GuideRequest request{photon_batch_->shares(), footprints_.overlaps, settings_.params.getFloat("guiding")};
     if (paysToGuide(choice_.caustic, needs_)) {
       guided_ = guideEmission(world_, *light_tracer_, request);
-    } else if (gather_ && request.guided > 0.0F && samples_budget_ > kFewestPaths / passes_.tiles().pixels()) {
+    } else if (gather_ && request.guided > 0.0F && mayTraceMoreThan(kFewestPaths)) {
       // Once: what later is learned of paths must not change where they are thought to end.
       if (!places_) places_.emplace(world_, camera_, settings_.width, settings_.height, path_tracer_, path_needs_);
       guided_ = guideToPlaces(world_, *light_tracer_, request, *places_);
@@ -512,7 +512,7 @@ class ReferenceRender {
       result.notes.emplace_back(
           "paths go on from diffuse surfaces towards what light came from in a pilot: half of them, where that pays");
     for (const GuidedLight& light : guided_)
-      result.notes.push_back(fmt::format("photons of '{}' guided: {:.0f} % of them reach the picture, {:.0f} % if even",
+      result.notes.push_back(fmt::format("photons of '{}' guided: {:.0f} % of them are of use, {:.0f} % if even",
                                          light.name, 100.0 * light.seen_guided, 100.0 * light.seen_even));
     for (std::string& sentence : explainEstimators(choice_)) result.notes.push_back(std::move(sentence));
     if (any_delta && vcm_ && needs_.specular)
