@@ -3,6 +3,7 @@
 #include <utility>
 
 #include "core/parallel.h"
+#include "trace/morton_order.h"
 
 namespace nephroid {
 namespace {
@@ -38,6 +39,16 @@ KernelPhoton makeKernel(const GridPhoton& photon, float radius, float scale) {
           .inverse_axes = 1.0F / (a * b),
           .dir = photon.dir,
           .flux = photon.flux};
+}
+
+/// Numbers of photons in the order in which they are kept: those of one place have few lines of the cache between them.
+std::vector<std::uint32_t> orderByPlace(std::span<const GridPhoton> photons) {
+  Bounds bounds;
+  for (const GridPhoton& photon : photons) bounds.add(photon.position);
+  const MortonOrder order(bounds);
+  std::vector<std::uint32_t> keys(photons.size());
+  std::ranges::transform(photons, keys.begin(), [&](const GridPhoton& photon) { return order.keyOf(photon.position); });
+  return MortonOrder::sort(keys);
 }
 
 }  // namespace
@@ -105,9 +116,12 @@ class KernelMap::GridBuilder {
 KernelMap::KernelMap(std::span<const GridPhoton> photons, const KernelRadii& radii, float scale) {
   if (photons.empty()) return;
   photons_.resize(photons.size());
+  const std::vector<std::uint32_t> order = orderByPlace(photons);
   parallelFor((photons.size() + kChunk - 1) / kChunk, [&](std::size_t c) {
-    for (std::size_t i = c * kChunk; i < std::min((c + 1) * kChunk, photons.size()); ++i)
-      photons_[i] = makeKernel(photons[i], scale * radii.at(photons[i].position), scale);
+    for (std::size_t i = c * kChunk; i < std::min((c + 1) * kChunk, photons.size()); ++i) {
+      const GridPhoton& photon = photons[order[i]];
+      photons_[i] = makeKernel(photon, scale * radii.at(photon.position), scale);
+    }
   });
   float widest = 0.0F;
   for (const KernelPhoton& photon : photons_) widest = std::max(widest, radiusOf(photon));

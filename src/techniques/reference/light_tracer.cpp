@@ -97,7 +97,7 @@ vec3 LightTracer::lightNormalOf(std::size_t emitter, std::uint64_t photon) const
 
 void LightTracer::emit(std::size_t emitter, std::uint32_t begin, std::uint32_t end, PhotonWave& wave,
                        PhotonTally& tally) const {
-  const PhotonOrder order(targets_->bounds());
+  const MortonOrder order(targets_->bounds());
   for (std::uint32_t i = begin; i < end; ++i) {
     Sampler sampler = samplerOf(emitter, wave.first() + i);
     const EmittedPhoton photon = emitters_[emitter]->emit(sampler);

@@ -3,7 +3,7 @@
 namespace nephroid {
 namespace {
 
-/// Marks a place that was left empty; no key of PhotonOrder has all bits.
+/// Marks a place that was left empty; no key of MortonOrder has all bits.
 constexpr std::uint32_t kEmpty = 0xFFFFFFFFU;
 
 }  // namespace
@@ -21,7 +21,7 @@ void PhotonWave::put(std::uint32_t index, const Photon& photon, std::uint32_t ke
 }
 
 void PhotonWave::close(bool sort) {
-  order_ = PhotonOrder::sort(sort ? keys_ : std::vector<std::uint32_t>(keys_.size(), 0));
+  order_ = MortonOrder::sort(sort ? keys_ : std::vector<std::uint32_t>(keys_.size(), 0));
   std::erase_if(order_, [&](std::uint32_t i) { return keys_[i] == kEmpty; });
 }
 

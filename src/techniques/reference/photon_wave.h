@@ -10,8 +10,8 @@
 
 #include "core/huge_pages.h"
 #include "core/sampling/sampler.h"
-#include "techniques/reference/photon_order.h"
 #include "trace/emission.h"
+#include "trace/morton_order.h"
 
 namespace nephroid {
 

@@ -1,4 +1,4 @@
-#include "techniques/reference/photon_order.h"
+#include "trace/morton_order.h"
 
 #include <array>
 #include <numeric>
@@ -28,18 +28,21 @@ std::uint32_t clampStep(float x) {
 
 }  // namespace
 
-PhotonOrder::PhotonOrder(const Bounds& targets)
-    : centre_(targets.centre()),
-      steps_per_m_(static_cast<float>(1U << kBitsPerAxis) / std::max(2.0F * targets.radius(), 1e-30F)) {}
+MortonOrder::MortonOrder(const Bounds& bounds)
+    : centre_(bounds.centre()),
+      steps_per_m_(static_cast<float>(1U << kBitsPerAxis) / std::max(2.0F * bounds.radius(), 1e-30F)) {}
 
-std::uint32_t PhotonOrder::keyOf(vec3 origin, vec3 dir) const {
+std::uint32_t MortonOrder::keyOf(vec3 origin, vec3 dir) const {
   const vec3 from_centre = origin - centre_;
-  const vec3 nearest = from_centre - dot(from_centre, dir) * dir;
-  const vec3 step = nearest * steps_per_m_ + static_cast<float>(1U << (kBitsPerAxis - 1));
+  return keyOfOffset(from_centre - dot(from_centre, dir) * dir);
+}
+
+std::uint32_t MortonOrder::keyOfOffset(vec3 from_centre) const {
+  const vec3 step = from_centre * steps_per_m_ + static_cast<float>(1U << (kBitsPerAxis - 1));
   return spreadBits(clampStep(step.x)) | spreadBits(clampStep(step.y)) << 1 | spreadBits(clampStep(step.z)) << 2;
 }
 
-std::vector<std::uint32_t> PhotonOrder::sort(std::span<const std::uint32_t> keys) {
+std::vector<std::uint32_t> MortonOrder::sort(std::span<const std::uint32_t> keys) {
   // Counting sort by the lowest third of the key, then, stable, by the others.
   std::vector<std::uint32_t> order(keys.size()), previous(keys.size());
   std::iota(order.begin(), order.end(), 0U);
