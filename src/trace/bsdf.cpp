@@ -65,9 +65,13 @@ float Bsdf::shadingCosineRatio(vec3 w) const {
   return geometric > 0.0F ? std::abs(dot(w, normal_)) / geometric : 0.0F;
 }
 
-std::optional<vec3> Bsdf::constantDiffuse() const {
+bool Bsdf::hasConstantDiffuse() const {
   const bool by_interface = !interface_is_specular_ && !smooth_ && interface_probability_ > 0.0F;
-  if (by_interface || material_.gloss > 0.0F) return std::nullopt;
+  return !by_interface && !(material_.gloss > 0.0F);
+}
+
+std::optional<vec3> Bsdf::constantDiffuse() const {
+  if (!hasConstantDiffuse()) return std::nullopt;
   return evaluateBase(base_scale_, base_factor_o_, baseFactorFor(0.0F));
 }
 

@@ -62,7 +62,9 @@ class Bsdf {
 
   /// Nothing but a smooth interface: what it does is mirror or transmit.
   bool isClear() const { return smooth_ && !hasDiffuse(); }
-  /// The value of the D class for all directions that reflectsFrom() allows, where it is one for all of them (Lambert).
+  /// Is the D class Lambert's, with one value for all directions that reflectsFrom() allows?
+  bool hasConstantDiffuse() const;
+  /// That value, if it is.
   std::optional<vec3> constantDiffuse() const;
   /// Is `wi` on wo's side of the true and the shaded surface? Light from there is reflected.
   bool reflectsFrom(vec3 wi) const { return sameSide(wi) && dot(wi, normal_) > 0.0F; }

@@ -7,6 +7,13 @@
 #include "core/sampling/warp.h"
 
 namespace nephroid {
+namespace {
+
+/// Of the half-angle under which a sphere is seen. @param sin2  squared sine of it
+float oneMinusCosOfSphere(float sin2) { return sin2 / (1.0F + std::sqrt(1.0F - sin2)); }  // without cancellation
+
+}  // namespace
+
 vec3 intensityAlong(const Light& light, vec3 dir) {
   if (light.kind != LightKind::kSpot) return light.intensity;
   return spotIntensity(light.intensity, light.direction, std::cos(light.inner_cone), std::cos(light.outer_cone), dir);
@@ -132,9 +139,8 @@ std::optional<LightSample> LightSet::samplePunctual(const Light& light, vec3 pos
     s.radiance = irradianceFromPoint(intensityAlong(light, -s.dir), squared, 1.0F);
     return s;
   }
-  // The cone that the sphere subtends, uniformly; 1 − cos from sin² without cancellation.
-  const float sin2 = light.radius * light.radius / squared;
-  const float one_minus_cos = sin2 / (1.0F + std::sqrt(1.0F - sin2));
+  // The cone that the sphere subtends, uniformly.
+  const float one_minus_cos = oneMinusCosOfSphere(light.radius * light.radius / squared);
   s.dir = Frame::fromZ(to_centre / centre_distance).toWorld(sampleUniformCone(u, one_minus_cos));
   const float along = dot(to_centre, s.dir);
   const vec3 beside = to_centre - along * s.dir;
@@ -281,8 +287,7 @@ LightSet::Met LightSet::metSphere(vec3 vertex, const Ray& ray, float t_max, std:
   const float room = radius_squared - dot(beside, beside);
   if (room < 0.0F || along - std::sqrt(room) >= t_max) return {};
   const vec3 from_vertex = light.position - vertex;
-  const float sin2 = std::min(radius_squared / dot(from_vertex, from_vertex), 1.0F);
-  const float one_minus_cos = sin2 / (1.0F + std::sqrt(1.0F - sin2));
+  const float one_minus_cos = oneMinusCosOfSphere(std::min(radius_squared / dot(from_vertex, from_vertex), 1.0F));
   return {intensityAlong(light, -ray.dir) / (kPi * radius_squared),
           probability_of_punctual_[which] / (2.0F * kPi * one_minus_cos), which, along};
 }
@@ -297,6 +302,23 @@ bool LightSet::anyMet() const {
   return !suns_.empty() || !spheres_.empty() || !mesh_lights_.empty() || environment_.has_value();
 }
 
+float LightSet::leastDensity(vec3 position) const {
+  if (!mesh_lights_.empty() || environment_) return 0.0F;
+  float least = kInfinity;
+  const auto take = [&](std::uint32_t which, float one_minus_cos) {
+    least = std::min(least, probability_of_punctual_[which] / (2.0F * kPi * one_minus_cos));
+  };
+  const std::vector<Light>& lights = scene_.scene().lights;
+  for (const std::uint32_t which : suns_) take(which, static_cast<float>(sunOneMinusCos(lights[which])));
+  for (const std::uint32_t which : spheres_) {
+    const vec3 to_centre = lights[which].position - position;
+    const float sin2 = lights[which].radius * lights[which].radius / dot(to_centre, to_centre);
+    if (!(sin2 < 1.0F)) return 0.0F;
+    take(which, oneMinusCosOfSphere(sin2));
+  }
+  return least;
+}
+
 float LightSet::densityTowards(std::uint32_t source, const LightRay& ray) const {
   if (source == sourceOfEnvironment()) return environment_probability_ * environment_->pdf(-ray.dir);
   if (source < probability_of_punctual_.size()) {
@@ -308,8 +330,7 @@ float LightSet::densityTowards(std::uint32_t source, const LightRay& ray) const 
     const float squared = dot(to_centre, to_centre), radius_squared = light.radius * light.radius;
     // From inside, `sample` finds nothing.
     if (squared <= radius_squared) return 0.0F;
-    const float sin2 = radius_squared / squared;
-    return probability * (1.0F + std::sqrt(1.0F - sin2)) / (2.0F * kPi * sin2);
+    return probability / (2.0F * kPi * oneMinusCosOfSphere(radius_squared / squared));
   }
   const std::size_t mesh = source - probability_of_punctual_.size();
   const float cos_light = dot(ray.normal, ray.dir);

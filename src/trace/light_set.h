@@ -97,6 +97,8 @@ class LightSet {
     }
   }
 
+  /// That `sample` chooses among.
+  std::size_t count() const { return entries_.size(); }
   // Lights are numbered: punctual ones as in SceneData::lights, then meshes, then the environment.
   std::uint32_t sourceCount() const { return sourceOfEnvironment() + 1; }
   std::uint32_t sourceOfMesh(std::size_t mesh_light) const {
@@ -106,6 +108,10 @@ class LightSet {
   /// Has no size: cannot be met by chance.
   bool isDelta(std::uint32_t source) const;
   bool anyMet() const;
+  /// Of all lights that can be met by chance from `position`, and all ways to them, the least density with which
+  /// `sample` finds one, 1/sr: infinite where none can be met, 0 where there is no bound: for surfaces that shine, for
+  /// an environment, and within a sphere.
+  float leastDensity(vec3 position) const;
   /// Density with which `sample(ray.arrival)` finds the light `source` along a ray from it: LightSample::pdf.
   float densityTowards(std::uint32_t source, const LightRay& ray) const;
 

@@ -118,6 +118,43 @@ TEST(LightSet, WhatIsMetHasTheDensityWithWhichItIsSampled) {
   EXPECT_GT(matched, 1900);
 }
 
+TEST(LightSet, LeastDensityIsThatOfTheWidestLight) {
+  const vec3 place(0.3F, 0, 0);
+  const auto leastOf = [&](const std::vector<Light>& lights) {
+    SceneData data = makeFloorScene();
+    data.lights = lights;
+    return Lit(std::move(data)).lights.leastDensity(place);
+  };
+  const Light lamp = test::makePoint(vec3(0, 2, 0), vec3(8.0F), 0.1F),
+              sun = test::makeSun(vec3(0, -1, 0), vec3(1), 2.0F),
+              spark = test::makePoint(vec3(1, 2, 0), vec3(8.0F), 0.0F);
+  EXPECT_EQ(leastOf({}), kInfinity);
+  EXPECT_EQ(leastOf({spark}), kInfinity);
+  EXPECT_EQ(leastOf({test::makePoint(place, vec3(1), 0.5F)}), 0.0F);
+  for (const std::vector<Light>& lights : {std::vector{lamp}, std::vector{sun}, std::vector{lamp, sun, spark}}) {
+    SceneData data = makeFloorScene();
+    data.lights = lights;
+    const Lit lit(std::move(data));
+    float least = kInfinity;
+    for (std::uint32_t i = 0; i < 64; ++i) {
+      Sampler sampler(5, 6, i);
+      const float choice = sampler.next1D();
+      if (const auto s = lit.lights.sample(place, choice, sampler.next2D()); s && !s->delta)
+        least = std::min(least, s->pdf);
+    }
+    EXPECT_NEAR(lit.lights.leastDensity(place), least, 1e-4F * least);
+  }
+}
+
+TEST(LightSet, LeastDensityHasNoBoundForSurfacesAndEnvironments) {
+  SceneData shining = makeFloorScene();
+  shining.materials[0].emission = vec3(1.0F);
+  EXPECT_EQ(Lit(std::move(shining)).lights.leastDensity(vec3(0, 1, 0)), 0.0F);
+  SceneData sky = makeFloorScene();
+  sky.environment.emplace().radiance = std::make_shared<Image>(64, 32, 3, 3.0F);
+  EXPECT_EQ(Lit(std::move(sky)).lights.leastDensity(vec3(0, 1, 0)), 0.0F);
+}
+
 TEST(LightSet, ASpotWithASizeIsSeenFromWhereItShines) {
   SceneData data = makeFloorScene();
   Light spot = test::makePoint(vec3(0, 2, 0), vec3(8.0F), 0.1F);

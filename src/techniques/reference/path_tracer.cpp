@@ -24,8 +24,9 @@ constexpr float kLesserShare = 1.0F / 4.0F;
 /// What is transmitted then draws its numbers from another seed: if both ways took the same, their errors would add up.
 constexpr std::uint32_t kSplitSeedOffset = 0x73747261U;
 
-/// Ways on from the first diffuse surface that a path from the eye meets, if what is beyond is asked for. The light
-/// that comes straight from lamps has little noise there, so following one would spend much on finding the place again.
+/// Ways on from the first diffuse surface that a path from the eye meets, unless light samples alone tell of all that
+/// is asked for. The light that comes straight from lamps has little noise there, so following one would spend much on
+/// finding the place again.
 constexpr std::uint32_t kDiffuseStrands = 4;
 /// They draw their numbers from one sequence, as neighbours in it, so that they are spread evenly.
 constexpr std::uint32_t kDiffuseSeedOffset = 0x64696666U;
@@ -33,9 +34,15 @@ constexpr std::uint32_t kDiffuseSeedOffset = 0x64696666U;
 /// and cost less than a path of their own each.
 constexpr std::uint32_t kLightSamples = 4;
 constexpr std::uint32_t kLightSeedOffset = 0x6C616D70U;
+/// Lights that paths meet by chance this much more seldom than light samples find them count by those alone: with both,
+/// chance would bring a ten-thousandth of what such a light sends, by the power heuristic.
+constexpr float kIdleChance = 0.01F;
 /// Where directions were learned, half of them are drawn by those, spread evenly on their own.
 constexpr std::uint32_t kGuidedStrands = kDiffuseStrands / 2;
 constexpr std::uint32_t kGuidedSeedOffset = 0x67756964U;
+
+/// Of what is seen first.
+bool drawsSeveralLightSamples(const LayerNeeds& needs) { return needs.direct && !needs.beyondDiffuse(); }
 
 float powerHeuristic(float pdf, float other) {
   if (!std::isfinite(pdf)) return 1.0F;
@@ -68,8 +75,8 @@ class EyePath {
  public:
   EyePath(const ReferenceWorld& world, const LayerNeeds& needs, const GatheredPhotons* photons,
           const PhotonPaths& gathered, const PhotonPaths& left, const Manifold* manifold,
-          const Continuation& continuation, const DirectionGuide* guide, Film& film, PathCounters& counters,
-          std::size_t pixel, std::uint32_t sample)
+          const Continuation& continuation, const DirectionGuide* guide, Film& film, PathCounters& counters, int x,
+          int y, std::uint32_t sample)
       : world_(world),
         needs_(needs),
         photons_(photons),
@@ -80,12 +87,15 @@ class EyePath {
         guide_(guide),
         film_(film),
         counters_(counters),
-        pixel_(pixel),
+        x_(x),
+        y_(y),
+        pixel_(static_cast<std::size_t>(y) * film.width + x),
         sample_(sample),
         walk_sampler_(makeSampler(kWalkSeedOffset)),
         strand_{makeSampler(0)} {}
 
-  void trace(vec2 pixel_corner) {
+  void trace() {
+    const vec2 pixel_corner(static_cast<float>(x_), static_cast<float>(y_));
     strand_.state.ray = world_.camera_model.rayThrough(pixel_corner + strand_.sampler.next2D());
     strand_.vertex = strand_.state.ray.origin;
     strand_.state.interior = world_.camera_interior;
@@ -157,6 +167,7 @@ class EyePath {
     if (!bsdf.isClear()) settleWavelength(strand_.state, encounter_);
     lobe_ = guide_ && bsdf.hasDiffuse() && strand_.events.diffuseCount() == 0 ? guide_->at(encounter_.point.position)
                                                                               : nullptr;
+    planLight(bsdf);
     for (const EventClass c : {EventClass::kSpecular, EventClass::kDiffuse})
       if (bsdf.isEvaluable(c) && isWanted(strand_.events.with(c))) connectToLights(bsdf, c);
     if (photons_ && bsdf.hasDiffuse()) gather(bsdf);
@@ -179,32 +190,39 @@ class EyePath {
     vec3 irradiance{0.0F};  ///< where it is seen directly
     vec3 by_half{0.0F};     ///< radiance, if kernels had half of their areas
   };
+  /// @param asks_for_half  is `by_half` wanted? It is 0 else
   Gathered gatherFrom(const KernelMap& map, const Bsdf& bsdf, bool asks_for_half) {
-    const auto constant = bsdf.constantDiffuse();
-    return constant
-               ? gatherBy(map, asks_for_half, [&](vec3 wi) { return bsdf.reflectsFrom(wi) ? *constant : vec3(0.0F); })
-               : gatherBy(map, asks_for_half,
-                          [&](vec3 wi) { return bsdf.evaluate(EventClass::kDiffuse, wi, Transport::kRadiance).f; });
-  }
-  /// @param reflect  the BSDF by direction  @param asks_for_half  is `by_half` wanted? It is 0 else
-  template <class Reflect>
-  Gathered gatherBy(const KernelMap& map, bool asks_for_half, const Reflect& reflect) {
+    const bool asks_for_irradiance = strand_.events.count() == 0 && needs_.anyIrradiance();
+    if (const auto constant = bsdf.constantDiffuse(); constant && !asks_for_irradiance)
+      return gatherByConstant(map, bsdf, *constant, asks_for_half);
     const SurfacePoint& point = encounter_.point;
-    vec3 radiance(0.0F), irradiance(0.0F), by_half(0.0F);
+    Gathered found;
+    map.visitKernels(point.position, point.normal_geometric, [&](const KernelPhoton& photon, float squared_radius) {
+      ++counters_.kernels;
+      const vec3 wi = -photon.dir;
+      const vec3 reflected = photon.flux * bsdf.evaluate(EventClass::kDiffuse, wi, Transport::kRadiance).f;
+      found.radiance += photon.weightAt(squared_radius) * reflected;
+      if (asks_for_half) found.by_half += photon.halfWeightAt(squared_radius) * reflected;
+      // As for light that is connected to the camera: on the side that the eye sees.
+      if (asks_for_irradiance &&
+          dot(wi, point.normal_geometric) * dot(strand_.state.ray.dir, point.normal_geometric) < 0.0F)
+        found.irradiance += photon.weightAt(squared_radius) * photon.flux;
+    });
+    return found;
+  }
+  /// The same where nothing but flux differs from photon to photon.
+  Gathered gatherByConstant(const KernelMap& map, const Bsdf& bsdf, vec3 constant, bool asks_for_half) {
+    const SurfacePoint& point = encounter_.point;
+    vec3 incident(0.0F), incident_by_half(0.0F);  // W/m²
     std::uint64_t kernels = 0;
-    const bool seen_directly = strand_.events.count() == 0;
     map.visitKernels(point.position, point.normal_geometric, [&](const KernelPhoton& photon, float squared_radius) {
       ++kernels;
-      const vec3 wi = -photon.dir;
-      const vec3 reflected = photon.flux * reflect(wi);
-      radiance += photon.weightAt(squared_radius) * reflected;
-      if (asks_for_half) by_half += photon.halfWeightAt(squared_radius) * reflected;
-      // As for light that is connected to the camera: on the side that the eye sees.
-      if (seen_directly && dot(wi, point.normal_geometric) * dot(strand_.state.ray.dir, point.normal_geometric) < 0.0F)
-        irradiance += photon.weightAt(squared_radius) * photon.flux;
+      if (!bsdf.reflectsFrom(-photon.dir)) return;
+      incident += photon.weightAt(squared_radius) * photon.flux;
+      if (asks_for_half) incident_by_half += photon.halfWeightAt(squared_radius) * photon.flux;
     });
     counters_.kernels += kernels;
-    return {radiance, irradiance, by_half};
+    return {.radiance = constant * incident, .by_half = constant * incident_by_half};
   }
 
   void gatherCaustic(const Bsdf& bsdf) {
@@ -252,6 +270,10 @@ class EyePath {
     if (!c.firstIsDiffuse()) return needs_.specular || (needs_.throughSpecular() && c.mayBecomeSpecularCaustic());
     // Light that is met by chance counts in part for what was sampled towards lights, so it has to be looked for.
     if (c.count() == 1 && needs_.direct) return true;
+    return leadsBeyondDirect(c);
+  }
+  /// To light that has more than one event. @param c  events, of which the first is diffuse
+  bool leadsBeyondDirect(const PathClass& c) const {
     const bool caustic = !left_.caustic && (needs_.caustic || needs_.irradiance_caustic);
     return needs_.beyondDiffuse() || (caustic && c.mayBecomeCaustic());
   }
@@ -261,41 +283,66 @@ class EyePath {
     return mayContribute(c) || c.layer() == PathLayer::kDirect;
   }
 
-  /// Of the surface met last, for each class.
-  std::uint32_t lightSamples() const {
-    return strand_.events.count() == 0 && needs_.direct && !needs_.beyondDiffuse() ? kLightSamples : 1;
+  /// How light is looked for at the surface met last.
+  void planLight(const Bsdf& bsdf) {
+    light_samples_ = diffuse_strands_ = 1;
+    chance_is_idle_ = asks_penumbrae_ = false;
+    if (strand_.events.count() > 0) return;
+    constexpr float kMostOfLambert = 1.0F / kPi;  // 1/sr
+    const float by_samples = world_.lights.leastDensity(encounter_.point.position);
+    const bool lights_are_small = bsdf.hasConstantDiffuse() && kMostOfLambert <= kIdleChance * by_samples;
+    chance_is_idle_ =
+        (lights_are_small || !needs_.direct) && !leadsBeyondDirect(strand_.events.with(EventClass::kDiffuse));
+    diffuse_strands_ = chance_is_idle_ ? 1 : kDiffuseStrands;
+    const bool is_without_size = world_.lights.count() == 1 && by_samples == kInfinity;
+    if (!drawsSeveralLightSamples(needs_) || is_without_size) return;
+    asks_penumbrae_ = lights_are_small && counters_.penumbrae && world_.lights.count() == 1;
+    if (!asks_penumbrae_ || counters_.penumbrae->mayBeAt(x_, y_, sample_)) light_samples_ = kLightSamples;
+  }
+  /// What the multi-sample model of multiple importance sampling needs to know (Veach 1997, section 9.2).
+  float lightSamplesPerWay(EventClass c) const {
+    return static_cast<float>(light_samples_) /
+           (c == EventClass::kDiffuse ? static_cast<float>(diffuse_strands_) : 1.0F);
   }
   void connectToLights(const Bsdf& bsdf, EventClass c) {
-    const std::uint32_t samples = lightSamples();
-    if (samples == 1) return connectToLight(bsdf, c, strand_.sampler, samples);
-    for (std::uint32_t i = 0; i < samples; ++i) {
-      Sampler sampler(world_.options.seed + kLightSeedOffset, static_cast<std::uint32_t>(pixel_),
-                      sample_ * samples + i);
-      connectToLight(bsdf, c, sampler, samples);
+    if (light_samples_ == 1) {
+      const bool seen = connectToLight(bsdf, c, strand_.sampler);
+      return noteLight(c, seen ? 1 : 0);
     }
+    std::uint32_t seen = 0;
+    for (std::uint32_t i = 0; i < light_samples_; ++i) {
+      Sampler sampler(world_.options.seed + kLightSeedOffset, static_cast<std::uint32_t>(pixel_),
+                      sample_ * kLightSamples + i);
+      if (connectToLight(bsdf, c, sampler)) ++seen;
+    }
+    noteLight(c, seen);
   }
-  /// @param samples  of which it is one
-  void connectToLight(const Bsdf& bsdf, EventClass c, Sampler& sampler, std::uint32_t samples) {
+  void noteLight(EventClass c, std::uint32_t seen) {
+    if (asks_penumbrae_ && c == EventClass::kDiffuse) counters_.penumbrae->note(x_, y_, seen, light_samples_);
+  }
+  /// By one of several light samples. @return whether it met nothing
+  bool connectToLight(const Bsdf& bsdf, EventClass c, Sampler& sampler) {
     const float u_choice = sampler.next1D();
     const auto light = world_.lights.sample(encounter_.point.position, u_choice, sampler.next2D());
-    if (!light) return;
+    if (!light) return false;
     const BsdfValue value = bsdf.evaluate(c, light->dir, Transport::kRadiance);
     const float cos_theta = std::abs(dot(light->dir, bsdf.normal()));
-    if (maxComponent(value.f) <= 0.0F) return;
+    if (maxComponent(value.f) <= 0.0F) return false;
     const Ray shadow{offsetOrigin(encounter_.point, light->dir), light->dir, light->distance * kShadowEnd};
     std::uint64_t rays = 0;
     const vec3 visible = world_.walker.visibility(shadow, mediumTowards(light->dir), rays);
     countRays(rays);
-    if (maxComponent(visible) <= 0.0F) return;
+    if (maxComponent(visible) <= 0.0F) return false;
     const float p_class = c == EventClass::kSpecular ? bsdf.specularProbability() : 1.0F - bsdf.specularProbability();
     const float pdf = light->delta || c == EventClass::kSpecular ? value.pdf : guided(bsdf).pdf(light->dir, value.pdf);
-    // Density of all samples together: the multi-sample model of Veach 1997, section 9.2.
-    const float light_pdf = light->pdf * static_cast<float>(samples);
-    const float weight = light->delta ? 1.0F : powerHeuristic(light_pdf, p_class * pdf);
+    const bool alone = light->delta || (chance_is_idle_ && c == EventClass::kDiffuse);
+    const float weight = alone ? 1.0F : powerHeuristic(lightSamplesPerWay(c) * light->pdf, p_class * pdf);
+    const float light_pdf = light->pdf * static_cast<float>(light_samples_);
     const vec3 incident = visible * light->radiance * (cos_theta * weight / light_pdf);
     const PathClass path = strand_.events.with(c);
     const vec3 irradiance = path.count() == 1 ? incident : strand_.irradiance_throughput * value.f * incident;
     add(path, strand_.throughput * value.f * incident, irradiance);
+    return true;
   }
 
   /// The medium on the side of the surface that `dir` leaves to.
@@ -309,8 +356,8 @@ class EyePath {
     if (splits(bsdf)) return followBoth(bsdf);
     const float p_specular = bsdf.specularProbability();
     const bool specular = p_specular > 0.0F && strand_.sampler.next1D() < p_specular;
-    if (!specular && strand_.events.count() == 0 && needs_.beyondDiffuse())
-      return followDiffuseStrands(bsdf, 1.0F - p_specular);
+    if (!specular && chance_is_idle_) return false;
+    if (!specular && diffuse_strands_ > 1) return followDiffuseStrands(bsdf, 1.0F - p_specular);
     return specular ? followSpecular(bsdf, p_specular) : followDiffuse(bsdf, 1.0F - p_specular, 1.0F, WayBy::kChance);
   }
   bool followSpecular(const Bsdf& bsdf, float p_class) {
@@ -418,7 +465,7 @@ class EyePath {
     strand_.throughput *= s.weight / p_class;
     strand_.irradiance_throughput *= s.weight / p_class;
     if (!s.pass) {
-      strand_.previous_light_samples = static_cast<float>(lightSamples());
+      strand_.previous_light_samples = lightSamplesPerWay(c);
       if (!recordEvent(bsdf, c, s, p_class)) return false;
       strand_.vertex = encounter_.point.position;
       strand_.previous_is_delta = s.delta;
@@ -518,6 +565,7 @@ class EyePath {
   const DirectionGuide* guide_;
   Film& film_;
   PathCounters& counters_;
+  int x_, y_;
   std::size_t pixel_;
   std::uint32_t sample_;
   Sampler walk_sampler_;
@@ -526,17 +574,23 @@ class EyePath {
   std::uint32_t split_count_ = 0;
   Encounter encounter_;
   const DirectionLobe* lobe_ = nullptr;  ///< of the surface met last, if ways on from there are guided
-  float eye_ior_ = 1.0F;                 ///< of the medium around the eye
+  // Of the surface met last:
+  std::uint32_t light_samples_ = 1;    ///< for each class
+  std::uint32_t diffuse_strands_ = 1;  ///< ways on if the next event is diffuse
+  bool chance_is_idle_ = false;        ///< diffuse ways on would bring nothing that light samples do not
+  bool asks_penumbrae_ = false;        ///< how many light samples there are depends on what neighbours saw
+  float eye_ior_ = 1.0F;               ///< of the medium around the eye
 };
 
 }  // namespace
 
 void PathTracer::tracePath(int x, int y, std::uint32_t sample, Film& film, PathCounters& counters,
                            const Continuation& continuation) const {
-  const auto pixel = static_cast<std::size_t>(y) * film.width + x;
-  EyePath path(world_, needs_, photons_, gathered_, left_, manifold_, continuation, guide_, film, counters, pixel,
+  EyePath path(world_, needs_, photons_, gathered_, left_, manifold_, continuation, guide_, film, counters, x, y,
                sample);
-  path.trace(vec2(static_cast<float>(x), static_cast<float>(y)));
+  path.trace();
 }
+
+bool PathTracer::mayDrawSeveralLightSamples() const { return drawsSeveralLightSamples(needs_); }
 
 }  // namespace nephroid

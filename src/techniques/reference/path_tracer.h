@@ -22,6 +22,7 @@
 #include "techniques/reference/gathered_photons.h"
 #include "techniques/reference/manifold/manifold.h"
 #include "techniques/reference/path_class.h"
+#include "techniques/reference/penumbra_finder.h"
 #include "techniques/reference/world.h"
 
 namespace nephroid {
@@ -33,6 +34,7 @@ struct PathCounters {
   PartTally* parts = nullptr;
   std::vector<DirectionLesson>* lessons = nullptr;  ///< one for each way on from a path's first diffuse surface
   std::vector<vec3>* gather_places = nullptr;       ///< where photons were gathered, world, m
+  PenumbraFinder* penumbrae = nullptr;              ///< asked as well, for how many light samples to draw
 
   /// How long it took, in rays: five kernels take as long as one, measured on `seabed`, `pool` and `wave`. Counted and
   /// not timed, for equal renders must take equal steps.
@@ -57,6 +59,8 @@ class PathTracer {
   /// From now on paths draw their ways on from the first diffuse surface by this as well, which must outlive them and
   /// may be none.
   void guideBy(const DirectionGuide* guide) { guide_ = guide; }
+  /// Is there use for a PenumbraFinder?
+  bool mayDrawSeveralLightSamples() const;
   /// One path through pixel (x, y), added to the film. Safe from any thread as long as no two share a pixel.
   void tracePath(int x, int y, std::uint32_t sample, Film& film, PathCounters& counters) const {
     tracePath(x, y, sample, film, counters, continuation_);

@@ -25,13 +25,17 @@ class PictureTiles {
     return static_cast<std::size_t>(y / kSide) * static_cast<std::size_t>(columns_) +
            static_cast<std::size_t>(x / kSide);
   }
+  /// Of the quarter of a tile's pixels, spread over it, that are visited before the others?
+  static bool comesFirst(int x, int y) { return x % 2 == 0 && y % 2 == 0; }
   /// Calls `visit(x, y)` for every pixel of a tile.
   template <class Visit>
   void visitPixels(std::size_t tile, const Visit& visit) const {
     const int x_first = static_cast<int>(tile % static_cast<std::size_t>(columns_)) * kSide;
     const int y_first = static_cast<int>(tile / static_cast<std::size_t>(columns_)) * kSide;
-    for (int y = y_first; y < std::min(y_first + kSide, height_); ++y)
-      for (int x = x_first; x < std::min(x_first + kSide, width_); ++x) visit(x, y);
+    for (const bool first : {true, false})
+      for (int y = y_first; y < std::min(y_first + kSide, height_); ++y)
+        for (int x = x_first; x < std::min(x_first + kSide, width_); ++x)
+          if (comesFirst(x, y) == first) visit(x, y);
   }
   /// Calls `visit(other)` for a tile and those that touch it.
   template <class Visit>

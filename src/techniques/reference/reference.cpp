@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <atomic>
 #include <chrono>
 #include <filesystem>
 #include <memory>
@@ -105,6 +104,7 @@ class ReferenceRender {
                                           {from_photons, connect, gathered});
     path_tracer_.continueBy(continuation_);
     if (paysToMeasureContinuation() && steering_.steers()) rates_.emplace(passes_.tiles(), continuation_);
+    if (path_tracer_.mayDrawSeveralLightSamples()) penumbrae_.emplace(passes_.tiles());
     if (paysToLearnDirections()) {
       PathTracer learner(world_, path_needs_);
       learner.leaveToPhotons(from_photons);
@@ -289,24 +289,28 @@ class ReferenceRender {
     if (gather_ && batches_done_ > 0 && !gathered_.holds(batches_done_ - 1))
       gathered_.take(*photon_batch_, batches_done_ - 1);
     const bool something = samples_done_ > 0;
-    std::atomic<std::uint64_t> rays{0}, work{0}, not_finite{0};
+    // By tile, each of which is one thread's: a sum that all share would be passed to and fro at every path.
+    struct Sum {
+      std::uint64_t rays = 0, work = 0, not_finite = 0;
+    };
+    std::vector<Sum> sums(passes_.tiles().count());
     passes_.run(
         [&](int x, int y, std::uint32_t sample) {
           PathCounters counters;
           if (path_needs_.eyeTraced(!vcm_)) traceEyePath(x, y, sample, counters);
           if (vcm_) vcm_->tracePath(x, y, sample, film_, counters);
-          rays.fetch_add(counters.rays, std::memory_order_relaxed);
-          work.fetch_add(counters.work(), std::memory_order_relaxed);
-          if (counters.not_finite > 0) not_finite.fetch_add(counters.not_finite, std::memory_order_relaxed);
+          Sum& sum = sums[passes_.tiles().tileOf(x, y)];
+          sum.rays += counters.rays, sum.work += counters.work(), sum.not_finite += counters.not_finite;
           return counters.work();
         },
         [&] { return stopped() && something; });
-    path_rays_ += rays, path_work_ += work, not_finite_ += not_finite;
+    for (const Sum& sum : sums) path_rays_ += sum.rays, path_work_ += sum.work, not_finite_ += sum.not_finite;
     if (passes_.planned()) return;
     ++samples_done_;
     steering_.takePaths(passes_, gather_ && photonsLeft());
   }
   void traceEyePath(int x, int y, std::uint32_t sample, PathCounters& counters) {
+    if (penumbrae_) counters.penumbrae = &*penumbrae_;
     if (!rates_) return path_tracer_.tracePath(x, y, sample, film_, counters);
     const std::size_t tile = passes_.tiles().tileOf(x, y);
     PartTally parts;
@@ -369,6 +373,7 @@ class ReferenceRender {
     steering_.visitState(state);
     passes_.visitState(state);
     if (rates_) rates_->visitState(state);
+    if (penumbrae_) penumbrae_->visitState(state);
     for (Ledger& ledger : ledgers_) ledger.visitState(state);
     for (std::uint64_t* count : {&samples_done_, &photons_done_, &batches_done_, &samples_at_photons_, &path_rays_,
                                  &path_work_, &light_rays_, &not_finite_})
@@ -570,6 +575,7 @@ class ReferenceRender {
   std::vector<StageTime> stages_;
   EyePasses passes_;
   std::optional<PathRates> rates_;
+  std::optional<PenumbraFinder> penumbrae_;
   bool gather_ = false;
   GatheredPhotons gathered_;
   std::uint64_t samples_budget_ = 0, photons_budget_ = 0, samples_done_ = 0, photons_done_ = 0, batches_done_ = 0;

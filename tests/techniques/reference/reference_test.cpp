@@ -97,7 +97,7 @@ TEST(Reference, CausticsThroughGlassAgreeBetweenPhotonsAndPaths) {
   // A slab over the floor: the lamp's light through it, seen through it. The kernel blurs, but the floor is evenly lit
   // where the camera looks, so the means agree to the noise and a few per cent of edge.
   SceneData scene;
-  addObject(scene, test::makeFloor(8.0), makeDiffuse(vec3(0.6F)));
+  addObject(scene, test::makeFloor(80.0), makeDiffuse(vec3(0.6F)));
   addObject(scene, makeBox("slab", dvec3(-3, 0.5, -3), dvec3(3, 0.8, 3)), makeGlass(1.5F));
   addObject(scene, makeRectangle("lamp", dvec3(0, 4, 0), dvec3(2.5, 0, 0), dvec3(0, 0, 2.5)), makeLamp(vec3(5.0F)));
   RenderSettings photons = makeSettings(16, 64, 1 << 20, {"specular_caustic"});
@@ -286,44 +286,88 @@ TEST(Reference, LayersAskedForAloneAreThoseOfAWholeRender) {
     EXPECT_NEAR(test::meanOf(*alone.image.find(name)).x, expected, 0.01 * expected) << name;
   }
   SceneData floor;
-  addObject(floor, test::makeFloor(8.0), makeDiffuse(vec3(0.6F)));
+  addObject(floor, test::makeFloor(80.0), makeDiffuse(vec3(0.6F)));
   floor.environment = scene.environment;
   const Camera down = makeCamera("down", vec3(0, 3, 0), vec3(0), radians(40));
   const RenderResult direct = renderReference(floor, down, makeSettings(8, 1024, 1, {"direct"}));
   EXPECT_NEAR(test::meanOf(direct.image.layers[0].image).x, 0.6, 0.002);
 }
 
+/// Of pixels of the layer `direct`, over independent renders.
+struct DirectLight {
+  double mean = 0.0, variance = 0.0;
+};
+constexpr int kDirectSize = 32, kDirectRenders = 16;
+DirectLight measureDirect(const SceneData& scene, const std::vector<std::string>& layers) {
+  std::vector<double> sums(kDirectSize * kDirectSize, 0.0), squares(sums);
+  for (int seed = 1; seed <= kDirectRenders; ++seed) {
+    RenderSettings settings = makeSettings(kDirectSize, 4, 1, layers);
+    settings.seed = static_cast<std::uint64_t>(seed);
+    const RenderResult render = renderReference(scene, lookFromAbove(), settings);
+    for (std::size_t p = 0; p < sums.size(); ++p) {
+      const double value = render.image.find("direct")->pixels[3 * p];
+      sums[p] += value / kDirectRenders, squares[p] += value * value / kDirectRenders;
+    }
+  }
+  DirectLight direct;
+  for (std::size_t p = 0; p < sums.size(); ++p) {
+    direct.mean += sums[p] / static_cast<double>(sums.size());
+    direct.variance += (squares[p] - sums[p] * sums[p]) / static_cast<double>(sums.size());
+  }
+  return direct;
+}
+
+/// With `indirect` paths have one shadow ray at the floor, without it several.
+/// @return its variance over the one beside other layers
+double expectSameMeanAlone(const SceneData& scene) {
+  const DirectLight alone = measureDirect(scene, {"direct"}),
+                    with_others = measureDirect(scene, {"direct", "indirect"});
+  const double error =
+      std::sqrt((alone.variance + with_others.variance) / (kDirectRenders * kDirectSize * kDirectSize));
+  EXPECT_NEAR(alone.mean, with_others.mean, 4.0 * error);
+  return alone.variance / with_others.variance;
+}
+
 TEST(Reference, DirectLightAloneHasTheSameMeanAndLessNoise) {
-  // The penumbra of a ball under a lamp. With `indirect` paths have one shadow ray at the floor, without it several.
+  // The penumbra of a ball under a lamp.
   SceneData scene = test::makeBallScene(makeDiffuse(vec3(0.6F)), 64);
   scene.lights.push_back(test::makePoint(vec3(-0.5F, 5.0F, 0.3F), vec3(50.0F), 0.8F));
   scene.lights.push_back(test::makeSun(vec3(0.3F, -1, 0.1F), vec3(1.0F), 4.0F));
-  struct Direct {
-    double mean = 0.0, variance = 0.0;
-  };
-  const auto measure = [&](const std::vector<std::string>& layers) {
-    constexpr int kSize = 32, kRenders = 16;
-    std::vector<double> sums(kSize * kSize, 0.0), squares(sums);
-    for (int seed = 1; seed <= kRenders; ++seed) {
-      RenderSettings settings = makeSettings(kSize, 4, 1, layers);
-      settings.seed = static_cast<std::uint64_t>(seed);
-      const RenderResult render = renderReference(scene, lookFromAbove(), settings);
-      for (std::size_t p = 0; p < sums.size(); ++p) {
-        const double value = render.image.find("direct")->pixels[3 * p];
-        sums[p] += value / kRenders, squares[p] += value * value / kRenders;
-      }
-    }
-    Direct direct;
-    for (std::size_t p = 0; p < sums.size(); ++p) {
-      direct.mean += sums[p] / (kSize * kSize);
-      direct.variance += (squares[p] - sums[p] * sums[p]) / (kSize * kSize);
-    }
-    return direct;
-  };
-  const Direct alone = measure({"direct"}), with_others = measure({"direct", "indirect"});
-  const double error = std::sqrt((alone.variance + with_others.variance) / (16.0 * 32 * 32));
-  EXPECT_NEAR(alone.mean, with_others.mean, 4.0 * error);
-  EXPECT_LT(alone.variance, 0.5 * with_others.variance);
+  EXPECT_LT(expectSameMeanAlone(scene), 0.5);
+}
+
+TEST(Reference, DirectLightOfASkyAloneHasTheSameMean) {
+  // Found as often by ways on from the floor as by light samples.
+  SceneData scene = test::makeBallScene(makeDiffuse(vec3(0.6F)), 64);
+  scene.environment = Environment{std::make_shared<Image>(64, 32, 3, 1.0F), 0.0F, 1.0F, "even"};
+  EXPECT_LT(expectSameMeanAlone(scene), 2.0) << "several ways on are followed here, too";
+}
+
+TEST(Reference, DirectLightOfOneSmallLampAloneHasTheSameMeanAndLessNoise) {
+  // Such a lamp is looked for by light samples alone, and by several in the tiles that show penumbra. Outlines are as
+  // noisy as before.
+  SceneData scene = test::makeBallScene(makeDiffuse(vec3(0.6F)), 64);
+  scene.lights.push_back(test::makePoint(vec3(-0.5F, 5.0F, 0.3F), vec3(50.0F), 0.4F));
+  EXPECT_LT(expectSameMeanAlone(scene), 0.7);
+}
+
+TEST(Reference, DirectLightOfOneSmallLampTakesOneShadowRayOutsideOfPenumbrae) {
+  // Nothing stands on the floor: a ray from the eye and one to the lamp, and three more in the quarter that looks
+  // first.
+  SceneData scene;
+  test::addObject(scene, test::makeFloor(80.0), makeDiffuse(vec3(0.6F)));
+  scene.lights.push_back(test::makePoint(vec3(-0.5F, 5.0F, 0.3F), vec3(50.0F), 0.05F));
+  const RenderResult one = renderReference(scene, lookFromAbove(), makeSettings(32, 1, 1, {"direct"})),
+                     four = renderReference(scene, lookFromAbove(), makeSettings(32, 4, 1, {"direct"}));
+  EXPECT_EQ(one.stats.rays, 32U * 32U * 11U / 4U);
+  EXPECT_EQ(four.stats.rays - one.stats.rays, 3U * 32U * 32U * 2U);
+}
+
+TEST(Reference, DirectLightOfOnePointTakesOneShadowRay) {
+  SceneData scene;
+  test::addObject(scene, test::makeFloor(80.0), makeDiffuse(vec3(0.6F)));
+  scene.lights.push_back(test::makePoint(vec3(-0.5F, 5.0F, 0.3F), vec3(50.0F), 0.0F));
+  EXPECT_EQ(renderReference(scene, lookFromAbove(), makeSettings(32, 1, 1, {"direct"})).stats.rays, 32U * 32U * 2U);
 }
 
 TEST(Reference, StopBeforeAnythingIsDoneIsInterruptedError) {
