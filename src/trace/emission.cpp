@@ -233,8 +233,8 @@ class PointEmitter final : public Emitter {
     const float cell_angle = std::sqrt(2.0F * kPi * one_minus_cos_) / static_cast<float>(kMaskSize);
     // Parts need not be much smaller than the light that looks at them.
     const float light_angle = light_.radius / std::max(length(targets.bounds().centre() - light_.position), 1e-30F);
-    const float part_angle = std::max(4.0F * cell_angle, 0.25F * light_angle);
-    CapMerger caps(std::max(0.25F * cell_angle, 0.15F * light_angle));
+    const float part_angle = std::max(4.0F * cell_angle, 0.35F * light_angle);
+    CapMerger caps(std::max(0.25F * cell_angle, 0.2F * light_angle));
     bool everything = false;
     targets.visitTriangles([&](const vec3* p) {
       visitParts(Triangle{{p[0], p[1], p[2]}}, light_.position, part_angle, 14,

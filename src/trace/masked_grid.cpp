@@ -1,6 +1,8 @@
 #include "trace/masked_grid.h"
 
 #include <cmath>
+#include <span>
+#include <utility>
 
 #include "core/sampling/warp.h"
 
@@ -39,9 +41,9 @@ DirectionCap boundBlock(const MaskedGrid& grid, float one_minus_cos, int x, int 
   return cap;
 }
 
-/// @param finest  blocks of so many cells along each side are not split any more
+/// @param finest  blocks of so many cells along each side are not split any more  @param caps  comes back in any order
 void markBlock(MaskedGrid& grid, float one_minus_cos, int x, int y, int size, int finest,
-               const std::vector<DirectionCap>& caps) {
+               std::span<DirectionCap> caps) {
   // Blocks of more than an eighth of the square bend too much for the bound above: they always split.
   const bool split_always = size > grid.width() / 8;
   const int half = size / 2;
@@ -51,19 +53,19 @@ void markBlock(MaskedGrid& grid, float one_minus_cos, int x, int y, int size, in
     return;
   }
   const DirectionCap block = boundBlock(grid, one_minus_cos, x, y, size);
-  std::vector<DirectionCap> inside;
-  for (const DirectionCap& cap : caps) {
+  std::size_t inside = 0;  // of them, all at the front
+  for (DirectionCap& cap : caps) {
     if (!overlap(block, cap)) continue;
     if (size <= finest || contains(cap, block)) {
       for (int j = y; j < y + size; ++j)
         for (int i = x; i < x + size; ++i) grid.mark(i, j);
       return;
     }
-    inside.push_back(cap);
+    std::swap(cap, caps[inside++]);
   }
-  if (inside.empty()) return;
+  if (inside == 0) return;
   for (const int dy : {0, half})
-    for (const int dx : {0, half}) markBlock(grid, one_minus_cos, x + dx, y + dy, half, finest, inside);
+    for (const int dx : {0, half}) markBlock(grid, one_minus_cos, x + dx, y + dy, half, finest, caps.first(inside));
 }
 
 }  // namespace
@@ -88,20 +90,32 @@ void CapMerger::add(const DirectionCap& cap) {
   std::uint64_t place = 0;
   for (int k = 0; k < 3; ++k)  // of [−1, 1] no more than 2²⁰ steps are told apart
     place = (place << 21) | static_cast<std::uint64_t>((cap.axis[k] + 1.0F) * std::min(inverse_spacing_, 0x1p19F));
-  const auto [found, is_new] = cap_of_place_.try_emplace(place, caps_.size());
-  if (is_new) {
-    caps_.push_back(cap);
-    return;
+  if (caps_.empty() || place != last_place_) {
+    const auto [found, is_new] = cap_of_place_.try_emplace(place, caps_.size());
+    last_place_ = place, last_ = found->second;
+    if (is_new) {
+      caps_.push_back(cap);
+      return;
+    }
   }
-  DirectionCap& merged = caps_[found->second];
+  DirectionCap& merged = caps_[last_];
   if (contains(merged, cap)) return;
-  // As wide as the farther side of the other, and a little more for rounding.
-  const float apart = 2.0F * std::asin(std::min(0.5F * length(cap.axis - merged.axis), 1.0F));
-  const float angle = std::min(apart + std::atan2(cap.sin_angle, cap.cos_angle) + 1e-6F, kPi);
-  if (std::cos(angle) < merged.cos_angle) merged.cos_angle = std::cos(angle), merged.sin_angle = std::sin(angle);
+  // As wide as the farther side of the other, and a little more for rounding. Half the chord is the sine of half the
+  // angle between the axes: no angle need be known.
+  const vec3 chord = cap.axis - merged.axis;
+  const float half_squared = std::min(0.25F * dot(chord, chord), 1.0F);
+  const float cos_apart = 1.0F - 2.0F * half_squared,
+              sin_apart = 2.0F * std::sqrt(half_squared * (1.0F - half_squared));
+  constexpr float kSlack = 1e-6F;
+  const float sine = sin_apart * cap.cos_angle + cos_apart * cap.sin_angle + kSlack;
+  const float cosine = cos_apart * cap.cos_angle - sin_apart * cap.sin_angle - kSlack * sine;
+  if (sine <= kSlack || cosine <= -1.0F)
+    merged.cos_angle = -1.0F, merged.sin_angle = 0.0F;
+  else if (cosine < merged.cos_angle)
+    merged.cos_angle = cosine, merged.sin_angle = sine;
 }
 
-void markCaps(MaskedGrid& grid, float one_minus_cos, const std::vector<DirectionCap>& caps) {
+void markCaps(MaskedGrid& grid, float one_minus_cos, std::vector<DirectionCap> caps) {
   // The border is as coarse as a sixteenth of the smallest cap: finer, and large caps, of which many overlap, take
   // long.
   float least_sine = 1.0F;

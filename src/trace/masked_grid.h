@@ -146,9 +146,12 @@ class CapMerger {
   float inverse_spacing_;
   std::vector<DirectionCap> caps_;
   std::unordered_map<std::uint64_t, std::size_t> cap_of_place_;
+  // Caps of neighbours come one after the other.
+  std::uint64_t last_place_ = 0;
+  std::size_t last_ = 0;  ///< cap of it
 };
 
 /// Marks every cell of `grid` that maps into one of `caps` through `capFromSquare`, and few others.
-void markCaps(MaskedGrid& grid, float one_minus_cos, const std::vector<DirectionCap>& caps);
+void markCaps(MaskedGrid& grid, float one_minus_cos, std::vector<DirectionCap> caps);
 
 }  // namespace nephroid

@@ -60,14 +60,19 @@ float boundPositionError(vec3 normal, vec3 magnitude) { return kPositionErrorSca
 
 /// The triangles of a mesh, placed by `placed` (the identity for meshes that are instanced).
 HugePageVector<PackedTriangle> packTriangles(const Mesh& mesh, const mat4& placed) {
+  // Of each vertex once: some six triangles share it.
+  std::vector<vec3> positions(mesh.positions.size());
+  std::ranges::transform(mesh.positions, positions.begin(), [&](vec3 p) { return transformPoint(placed, p); });
   const mat3 normal_from_object = glm::transpose(glm::inverse(mat3(placed)));
+  std::vector<std::uint64_t> normals(mesh.normals.size());
+  std::ranges::transform(mesh.normals, normals.begin(),
+                         [&](vec3 n) { return PackedTriangle::packNormal(normalize(normal_from_object * n)); });
   HugePageVector<PackedTriangle> packed(mesh.triangles.size());
   for (std::size_t t = 0; t < packed.size(); ++t) {
     for (int k = 0; k < 3; ++k) {
       const std::uint32_t vertex = mesh.triangles[t][k];
-      packed[t].corners[k] = transformPoint(placed, mesh.positions[vertex]);
-      packed[t].normals[k] =
-          mesh.normals.empty() ? 0 : PackedTriangle::packNormal(normalize(normal_from_object * mesh.normals[vertex]));
+      packed[t].corners[k] = positions[vertex];
+      packed[t].normals[k] = normals.empty() ? 0 : normals[vertex];
     }
     const vec3* c = packed[t].corners;
     const vec3 normal = unitOrZero(cross(c[1] - c[0], c[2] - c[0]));
