@@ -3,8 +3,8 @@
 // The ellipse is the photon's footprint where it has one (photon differentials, [schjoth-2007]), which neighbours fill
 // evenly: those of a caustic overlap with little noise, however its sheets lie over each other. Else it is a disc.
 // Ellipses whose areas are within a factor of four share a grid of the boxes around them (box_grid.h), so that a place
-// looks into one cell of each grid. Kept along a Morton curve, those of one place on it in their own order, so that sums
-// over a place do not depend on threads.
+// looks into one cell of each grid. Kept along a Morton curve, those of one place on it in their own order, so that
+// sums over a place do not depend on threads.
 #pragma once
 
 #include <algorithm>
