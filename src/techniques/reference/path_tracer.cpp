@@ -578,7 +578,7 @@ class EyePath {
   std::uint32_t light_samples_ = 1;    ///< for each class
   std::uint32_t diffuse_strands_ = 1;  ///< ways on if the next event is diffuse
   bool chance_is_idle_ = false;        ///< diffuse ways on would bring nothing that light samples do not
-  bool asks_penumbrae_ = false;        ///< how many light samples there are depends on what neighbours saw
+  bool asks_penumbrae_ = false;        ///< how many light samples there are depends on what its tile showed
   float eye_ior_ = 1.0F;               ///< of the medium around the eye
 };
 

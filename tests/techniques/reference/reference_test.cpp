@@ -97,7 +97,7 @@ TEST(Reference, CausticsThroughGlassAgreeBetweenPhotonsAndPaths) {
   // A slab over the floor: the lamp's light through it, seen through it. The kernel blurs, but the floor is evenly lit
   // where the camera looks, so the means agree to the noise and a few per cent of edge.
   SceneData scene;
-  addObject(scene, test::makeFloor(80.0), makeDiffuse(vec3(0.6F)));
+  addObject(scene, test::makeFloor(8.0), makeDiffuse(vec3(0.6F)));
   addObject(scene, makeBox("slab", dvec3(-3, 0.5, -3), dvec3(3, 0.8, 3)), makeGlass(1.5F));
   addObject(scene, makeRectangle("lamp", dvec3(0, 4, 0), dvec3(2.5, 0, 0), dvec3(0, 0, 2.5)), makeLamp(vec3(5.0F)));
   RenderSettings photons = makeSettings(16, 64, 1 << 20, {"specular_caustic"});
@@ -286,7 +286,7 @@ TEST(Reference, LayersAskedForAloneAreThoseOfAWholeRender) {
     EXPECT_NEAR(test::meanOf(*alone.image.find(name)).x, expected, 0.01 * expected) << name;
   }
   SceneData floor;
-  addObject(floor, test::makeFloor(80.0), makeDiffuse(vec3(0.6F)));
+  addObject(floor, test::makeFloor(8.0), makeDiffuse(vec3(0.6F)));
   floor.environment = scene.environment;
   const Camera down = makeCamera("down", vec3(0, 3, 0), vec3(0), radians(40));
   const RenderResult direct = renderReference(floor, down, makeSettings(8, 1024, 1, {"direct"}));
