@@ -1,13 +1,19 @@
 // How much of the noise of paths from the eye comes from the photons that they gather.
 //
 // Paths that gather the same batch of photons err alike: more of them lessen only what is their own. Of a few pixels
-// the rounds of paths are kept apart. Within a batch they differ by the paths' own variance V_e, from batch to batch by
-// the photons' V_g as well (one-way analysis of variance with groups of unequal size): with B batches of n_b passes,
-// N = Σ n_b, the mean squares within, M_w, and between, M_b, have the means V_e and V_e + n₀ V_g with
-// n₀ = (N − Σ n_b²/N)/(B − 1), and the variance of the mean over all is V_e/N + V_g Σ n_b²/N².
+// the rounds of paths are kept apart. Passes of a pixel are spread evenly, most of all every two that follow each other
+// from an even number on: they deviate from each other more than independent ones, and their mean errs less. So the
+// paths' own variance cannot be had from how much passes differ within a batch; but half of the mean square by which
+// the two of a pair differ is more by the photons' variance V_g where they gathered two batches than where they
+// gathered one, whatever the passes have to do with each other.
+// From batch to batch means of passes differ by both: with B batches of n_b passes, N = Σ n_b, the mean square between
+// them (one-way analysis of variance with groups of unequal size) has the mean V_e + n₀ V_g with
+// n₀ = (N − Σ n_b²/N)/(B − 1), V_e the paths' variance as runs of n_b have it, times their length. The variance of the
+// mean over all is V_e/N + V_g Σ n_b²/N².
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <string_view>
 #include <vector>
@@ -26,9 +32,14 @@ class GatherProbe {
   void takeRound(std::span<const std::uint64_t> passes);
   /// The next round gathers other photons. Batches that no round gathered leave no trace.
   void closeBatch();
-  /// Of the variance of the mean, relative to what is seen and summed over the picture, the part that is the photons':
-  /// 0 to 1. Unknown, before two batches were gathered by two rounds each, it is 1.
-  double photonsShare() const;
+  /// Of variances relative to what is seen, summed over the pixels that are watched.
+  struct Parts {
+    double paths = 0.0;     ///< V_e/N
+    double photons = 0.0;   ///< V_g Σ n_b²/N²
+    double of_batch = 0.0;  ///< V_g
+  };
+  /// Unknown before there are two batches, and pairs of passes of one and of two batches.
+  std::optional<Parts> parts() const;
 
   /// Visits all that a checkpoint keeps of it.
   template <class State>
@@ -37,21 +48,29 @@ class GatherProbe {
   }
 
  private:
-  /// One of each tile. Values are means over the channels.
+  /// Half of the squares by which two passes differ.
+  struct Pairs {
+    double squares = 0.0, count = 0.0;
+    double mean() const { return squares / count; }
+  };
+  /// Some of each tile. Values are means over the channels.
   struct Pixel {
-    double sum = 0.0, passes = 0.0;  ///< in all rounds
-    double batch_sum = 0.0, batch_passes = 0.0, batch_rounds = 0.0;
-    double batch_squares = 0.0;                    ///< Σ S_i²/n_i over its rounds
-    double within = 0.0, within_freedom = 0.0;     ///< squares within closed batches
+    std::size_t tile = 0, pixel = 0;
+    double sum = 0.0, passes = 0.0;                ///< in all rounds
+    double batch_sum = 0.0, batch_passes = 0.0;    ///< of the batch that is gathered
     double closed_sum = 0.0, closed_passes = 0.0;  ///< in closed batches
     double squares = 0.0, passes_squared = 0.0;    ///< Σ S_b²/n_b, Σ n_b²
     double batches = 0.0;
-  };
-  double sumAt(std::size_t tile) const;
+    double first = 0.0, first_batch = -1.0;  ///< of a pair: the pass, and how many batches came before; −1: none
+    Pairs of_one_batch, of_two;
 
-  PictureTiles tiles_;
+    void takePass(double value);
+    bool isKnown() const { return batches >= 2.0 && of_one_batch.count > 0.0 && of_two.count > 0.0; }
+  };
+  double sumAt(std::size_t pixel) const;
+
   std::vector<const FilmPlane*> planes_;
-  std::vector<Pixel> pixels_;  ///< by tile
+  std::vector<Pixel> pixels_;
 };
 
 }  // namespace nephroid

@@ -269,11 +269,15 @@ class ReferenceRender {
       // Paths that gather the same photons over and over err alike.
       const std::uint64_t rounds = samples_done_ - samples_at_photons_;
       if (rounds == 0) return steering_.ungatheredPhotonsPay(path_work_, light_rays_);
-      if (steering_.mustGatherOn(rounds)) return false;
+      if (steering_.mustGatherOn(rounds, samples_done_)) return false;
       if (!steering_.mayGatherOn(rounds, samples_done_)) return true;
     }
     if (!steering_.isKnown()) return share(photons_done_, kDefaultPhotons) <= share(samples_done_, kDefaultSamples);
-    return steering_.photonsPay(path_work_, light_rays_);
+    return steering_.photonsPay({.path_work = path_work_,
+                                 .rounds = samples_done_,
+                                 .light_rays = light_rays_,
+                                 .batches = batches_done_,
+                                 .rounds_of_batch = samples_done_ - samples_at_photons_});
   }
 
   static double share(std::uint64_t done, std::uint64_t budget) {

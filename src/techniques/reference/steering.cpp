@@ -78,6 +78,14 @@ bool Steering::reachesTarget() const {
   return settings_.target_error > 0.0 && isKnown() && error_.error.total() <= settings_.target_error;
 }
 
+bool Steering::mustGatherOn(std::uint64_t rounds_of_batch, std::uint64_t rounds) const {
+  if (isKnown()) return rounds_of_batch < 1;
+  if (batch_passes_ < kMostBatchPasses) return rounds_of_batch < batch_passes_;
+  // Of every four blocks of four rounds the second is gathered from three batches, one, two and one round each.
+  const std::uint64_t block = rounds / kMostBatchPasses, place = rounds % kMostBatchPasses;
+  return block % 4 == 1 ? place == 2 : place != 0;
+}
+
 bool Steering::mayGatherOn(std::uint64_t rounds_of_batch, std::uint64_t rounds) const {
   return isKnown() && rounds_of_batch < std::max(batch_passes_, rounds / kBatchShare);
 }
@@ -88,10 +96,19 @@ bool Steering::ungatheredPhotonsPay(std::uint64_t path_work, std::uint64_t light
                           error_.error.from_eye * static_cast<double>(light_rays);
 }
 
-bool Steering::photonsPay(std::uint64_t path_work, std::uint64_t light_rays) const {
-  const double gathered = probe_ ? error_.error.from_eye * probe_->photonsShare() : 0.0;
-  return (error_.error.from_lights + gathered) * static_cast<double>(path_work) >=
-         (error_.error.from_eye - gathered) * static_cast<double>(light_rays);
+bool Steering::photonsPay(const Work& work) const {
+  const double path_work = static_cast<double>(work.path_work), light_rays = static_cast<double>(work.light_rays);
+  const RelativeError& error = error_.error;
+  if (!probe_) return error.from_lights * path_work >= error.from_eye * light_rays;
+  const std::optional<GatherProbe::Parts> parts = probe_->parts();
+  if (!parts || error.from_eye <= 0.0) return true;
+  // What a batch adds to pixels that see it is noise of its own, in units of the probe.
+  const double seen = error.from_lights * (parts->paths + parts->photons) / error.from_eye;
+  const double rounds = static_cast<double>(work.rounds), batches = static_cast<double>(work.batches);
+  const double of_batch = (parts->of_batch + seen * batches) * path_work / rounds;
+  const double of_round = parts->paths * rounds * light_rays / batches;
+  const auto n = static_cast<double>(work.rounds_of_batch);
+  return n * (n + 1.0) * of_batch >= of_round;
 }
 
 void Steering::chooseRates(PathRates& rates) const {

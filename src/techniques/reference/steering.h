@@ -62,12 +62,22 @@ class Steering {
   bool mayGatherOn(std::uint64_t rounds_of_batch, std::uint64_t rounds) const;
   /// Do photons lessen the error more than paths that gather the latest batch would, even if no path gathers it?
   bool ungatheredPhotonsPay(std::uint64_t path_work, std::uint64_t light_rays) const;
-  /// Have so few rounds gathered them that more are due, whatever pays? Until errors are known several: the noise of
-  /// paths themselves is what rounds of one batch differ by.
-  bool mustGatherOn(std::uint64_t rounds_of_batch) const { return rounds_of_batch < (isKnown() ? 1 : batch_passes_); }
+  /// Have so few rounds gathered them that another one is due, whatever pays? One, once errors are known. Before that
+  /// most batches serve as many rounds as a batch from the eye has passes, and some fewer, so that pairs of passes that
+  /// gathered one batch can be held against such that gathered two.
+  /// @param rounds  in all
+  bool mustGatherOn(std::uint64_t rounds_of_batch, std::uint64_t rounds) const;
+  /// What was done so far.
+  struct Work {
+    std::uint64_t path_work = 0, rounds = 0;  ///< of paths: see PathCounters
+    std::uint64_t light_rays = 0, batches = 0;
+    std::uint64_t rounds_of_batch = 0;  ///< that gathered the latest
+  };
   /// Do photons lessen the error more by another ray? A variance falls by its share per pass, and a pass costs rays.
-  /// Rays, not seconds: equal renders must take equal steps. @param path_work  of all paths, see PathCounters
-  bool photonsPay(std::uint64_t path_work, std::uint64_t light_rays) const;
+  /// Where paths gather, a batch is to serve as many rounds n as all the others, for it counts by them: with V_e the
+  /// variance of a round, V_g of a batch and c their costs, (V_e + n V_g)(c_e + c_g/n) is least for n² = V_e c_g/(V_g
+  /// c_e). Rays, not seconds: equal renders must take equal steps.
+  bool photonsPay(const Work& work) const;
   void planRound(EyePasses& passes) const;
   /// What it knows of the layer that steers is for `rates` as well.
   void chooseRates(PathRates& rates) const;
