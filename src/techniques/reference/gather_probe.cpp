@@ -1,12 +1,26 @@
 #include "techniques/reference/gather_probe.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 #include "techniques/reference/error_estimate.h"
 
 namespace nephroid {
 namespace {
+
+/// Passes whose pairs are looked at. Later ones are made otherwise, where paths learn how to go on, and what is made
+/// otherwise cannot be held against each other.
+constexpr double kPairedPasses = 16.0;
+
+/// Groups of pixels, of which the one in the middle tells of all: next to outlines a few pixels differ so much from
+/// pass to pass that they would outweigh what the others say.
+constexpr std::size_t kGroups = 15;
+static_assert(kGroups % 2 == 1);
+double medianOf(std::array<double, kGroups> values) {
+  std::ranges::nth_element(values, values.begin() + kGroups / 2);
+  return values[kGroups / 2];
+}
 
 double squared(double x) { return x * x; }
 
@@ -38,7 +52,7 @@ void GatherProbe::takeRound(std::span<const std::uint64_t> passes) {
     const double gained = static_cast<double>(passes[p.tile]) - p.passes;
     if (gained <= 0.0) continue;
     const double sum = sumAt(p.pixel);
-    if (gained == 1.0)
+    if (gained == 1.0 && p.passes < kPairedPasses)
       p.takePass(sum - p.sum);
     else
       p.first_batch = -1.0;
@@ -72,19 +86,24 @@ std::optional<GatherProbe::Parts> GatherProbe::parts() const {
   for (const Pixel& p : pixels_) brightness += p.closed_passes > 0.0 ? p.closed_sum / p.closed_passes : 0.0;
   const double floor = squared(kRelativeFloor * brightness / static_cast<double>(pixels_.size()));
   Parts sum;
-  bool known = false;
+  std::array<double, kGroups> of_batch{}, photons{}, between_batches{};  // by group, of the photons
+  std::size_t count = 0;
   for (const Pixel& p : pixels_) {
     if (!p.isKnown() || p.closed_sum == 0.0) continue;
-    known = true;
     const double n = p.closed_passes, scale = squared(p.closed_sum / n) + floor;
-    const double of_batch = p.of_two.mean() - p.of_one_batch.mean();
+    const double mean_squared = p.passes_squared / n;  // of passes by batch, weighted by passes
     const double between = (p.squares - squared(p.closed_sum) / n) / (p.batches - 1.0);
-    const double of_pass = between - of_batch * (n - p.passes_squared / n) / (p.batches - 1.0);
-    sum.paths += of_pass / n / scale;
-    sum.photons += of_batch * p.passes_squared / squared(n) / scale;
-    sum.of_batch += of_batch / scale;
+    sum.paths += between / n / scale;
+    const double photon_variance = (p.of_two.mean() - p.of_one_batch.mean()) / scale;
+    const std::size_t group = count++ % kGroups;
+    of_batch[group] += photon_variance;
+    photons[group] += photon_variance * mean_squared / n;
+    between_batches[group] += photon_variance * (n - mean_squared) / (p.batches - 1.0) / n;
   }
-  if (!known) return std::nullopt;
+  if (count == 0) return std::nullopt;
+  sum.of_batch = kGroups * medianOf(of_batch);
+  sum.photons = kGroups * medianOf(photons);
+  sum.paths -= kGroups * medianOf(between_batches);
   // By chance one may seem to be less than nothing.
   for (double* part : {&sum.paths, &sum.photons, &sum.of_batch}) *part = std::max(*part, 0.0);
   return sum;

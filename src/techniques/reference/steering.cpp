@@ -81,9 +81,9 @@ bool Steering::reachesTarget() const {
 bool Steering::mustGatherOn(std::uint64_t rounds_of_batch, std::uint64_t rounds) const {
   if (isKnown()) return rounds_of_batch < 1;
   if (batch_passes_ < kMostBatchPasses) return rounds_of_batch < batch_passes_;
-  // Of every four blocks of four rounds the second is gathered from three batches, one, two and one round each.
+  // The second and third four rounds are gathered from three batches each, by one, two and one of them.
   const std::uint64_t block = rounds / kMostBatchPasses, place = rounds % kMostBatchPasses;
-  return block % 4 == 1 ? place == 2 : place != 0;
+  return block == 1 || block == 2 ? place == 2 : place != 0;
 }
 
 bool Steering::mayGatherOn(std::uint64_t rounds_of_batch, std::uint64_t rounds) const {

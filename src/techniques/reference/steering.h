@@ -63,8 +63,8 @@ class Steering {
   /// Do photons lessen the error more than paths that gather the latest batch would, even if no path gathers it?
   bool ungatheredPhotonsPay(std::uint64_t path_work, std::uint64_t light_rays) const;
   /// Have so few rounds gathered them that another one is due, whatever pays? One, once errors are known. Before that
-  /// most batches serve as many rounds as a batch from the eye has passes, and some fewer, so that pairs of passes that
-  /// gathered one batch can be held against such that gathered two.
+  /// most batches serve as many rounds as a batch from the eye has passes, and some early ones fewer, so that pairs of
+  /// passes that gathered one batch can be held against such that gathered two.
   /// @param rounds  in all
   bool mustGatherOn(std::uint64_t rounds_of_batch, std::uint64_t rounds) const;
   /// What was done so far.
