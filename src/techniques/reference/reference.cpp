@@ -272,7 +272,8 @@ class ReferenceRender {
       if (steering_.mustGatherOn(rounds, samples_done_)) return false;
       if (!steering_.mayGatherOn(rounds, samples_done_)) return true;
     }
-    if (!steering_.isKnown()) return share(photons_done_, kDefaultPhotons) <= share(samples_done_, kDefaultSamples);
+    if (!steering_.knowsWhatPays())
+      return share(photons_done_, kDefaultPhotons) <= share(samples_done_, kDefaultSamples);
     return steering_.photonsPay({.path_work = path_work_,
                                  .rounds = samples_done_,
                                  .light_rays = light_rays_,

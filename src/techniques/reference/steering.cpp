@@ -79,7 +79,7 @@ bool Steering::reachesTarget() const {
 }
 
 bool Steering::mustGatherOn(std::uint64_t rounds_of_batch, std::uint64_t rounds) const {
-  if (isKnown()) return rounds_of_batch < 1;
+  if (knowsWhatPays()) return rounds_of_batch < 1;
   if (batch_passes_ < kMostBatchPasses) return rounds_of_batch < batch_passes_;
   // The second and third four rounds are gathered from three batches each, by one, two and one of them.
   const std::uint64_t block = rounds / kMostBatchPasses, place = rounds % kMostBatchPasses;
@@ -87,7 +87,7 @@ bool Steering::mustGatherOn(std::uint64_t rounds_of_batch, std::uint64_t rounds)
 }
 
 bool Steering::mayGatherOn(std::uint64_t rounds_of_batch, std::uint64_t rounds) const {
-  return isKnown() && rounds_of_batch < std::max(batch_passes_, rounds / kBatchShare);
+  return knowsWhatPays() && rounds_of_batch < std::max(batch_passes_, rounds / kBatchShare);
 }
 
 bool Steering::ungatheredPhotonsPay(std::uint64_t path_work, std::uint64_t light_rays) const {
@@ -101,9 +101,9 @@ bool Steering::photonsPay(const Work& work) const {
   const RelativeError& error = error_.error;
   if (!probe_) return error.from_lights * path_work >= error.from_eye * light_rays;
   const std::optional<GatherProbe::Parts> parts = probe_->parts();
-  if (!parts || error.from_eye <= 0.0) return true;
+  if (!parts || (isKnown() && error.from_eye <= 0.0)) return true;
   // What a batch adds to pixels that see it is noise of its own, in units of the probe.
-  const double seen = error.from_lights * (parts->paths + parts->photons) / error.from_eye;
+  const double seen = isKnown() ? error.from_lights * (parts->paths + parts->photons) / error.from_eye : 0.0;
   const double rounds = static_cast<double>(work.rounds), batches = static_cast<double>(work.batches);
   const double of_batch = (parts->of_batch + seen * batches) * path_work / rounds;
   const double of_round = parts->paths * rounds * light_rays / batches;

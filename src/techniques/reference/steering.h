@@ -54,6 +54,8 @@ class Steering {
 
   /// Of fewer batches, even the mean over a picture is unsure.
   bool isKnown() const { return errors_.batches() >= kFirstBatches; }
+  /// Are these, or at least whose noise it is that is gathered?
+  bool knowsWhatPays() const { return isKnown() || (probe_ && probe_->parts()); }
   /// Of the layer that steers, at the last closed batches.
   const ErrorEstimate::OfLayer& error() const { return error_; }
   bool reachesTarget() const;
@@ -62,9 +64,9 @@ class Steering {
   bool mayGatherOn(std::uint64_t rounds_of_batch, std::uint64_t rounds) const;
   /// Do photons lessen the error more than paths that gather the latest batch would, even if no path gathers it?
   bool ungatheredPhotonsPay(std::uint64_t path_work, std::uint64_t light_rays) const;
-  /// Have so few rounds gathered them that another one is due, whatever pays? One, once errors are known. Before that
-  /// most batches serve as many rounds as a batch from the eye has passes, and some early ones fewer, so that pairs of
-  /// passes that gathered one batch can be held against such that gathered two.
+  /// Have so few rounds gathered them that another one is due, whatever pays? One, once it is known what pays. Before
+  /// that most batches serve as many rounds as a batch from the eye has passes, and some early ones fewer, so that
+  /// pairs of passes that gathered one batch can be held against such that gathered two.
   /// @param rounds  in all
   bool mustGatherOn(std::uint64_t rounds_of_batch, std::uint64_t rounds) const;
   /// What was done so far.
