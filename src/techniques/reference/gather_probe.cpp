@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <numeric>
 
 #include "techniques/reference/error_estimate.h"
 
@@ -13,13 +14,12 @@ namespace {
 /// otherwise cannot be held against each other.
 constexpr double kPairedPasses = 16.0;
 
-/// Groups of pixels, of which the one in the middle tells of all: next to outlines a few pixels differ so much from
-/// pass to pass that they would outweigh what the others say.
-constexpr std::size_t kGroups = 15;
-static_assert(kGroups % 2 == 1);
-double medianOf(std::array<double, kGroups> values) {
-  std::ranges::nth_element(values, values.begin() + kGroups / 2);
-  return values[kGroups / 2];
+/// Groups of pixels, and how many of those that say most, and least, are not heard: next to outlines a few pixels
+/// differ so much from pass to pass that they would outweigh what the others say.
+constexpr std::size_t kGroups = 15, kUnheard = 2;
+double meanOf(std::array<double, kGroups> values) {
+  std::ranges::sort(values);
+  return std::accumulate(values.begin() + kUnheard, values.end() - kUnheard, 0.0) / (kGroups - 2 * kUnheard);
 }
 
 double squared(double x) { return x * x; }
@@ -101,9 +101,9 @@ std::optional<GatherProbe::Parts> GatherProbe::parts() const {
     between_batches[group] += photon_variance * (n - mean_squared) / (p.batches - 1.0) / n;
   }
   if (count == 0) return std::nullopt;
-  sum.of_batch = kGroups * medianOf(of_batch);
-  sum.photons = kGroups * medianOf(photons);
-  sum.paths -= kGroups * medianOf(between_batches);
+  sum.of_batch = kGroups * meanOf(of_batch);
+  sum.photons = kGroups * meanOf(photons);
+  sum.paths -= kGroups * meanOf(between_batches);
   // By chance one may seem to be less than nothing.
   for (double* part : {&sum.paths, &sum.photons, &sum.of_batch}) *part = std::max(*part, 0.0);
   return sum;

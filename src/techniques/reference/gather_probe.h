@@ -36,7 +36,7 @@ class GatherProbe {
   struct Parts {
     double paths = 0.0;     ///< V_e/N
     double photons = 0.0;   ///< V_g Σ n_b²/N²
-    double of_batch = 0.0;  ///< V_g; this and `photons` by the median over groups of pixels
+    double of_batch = 0.0;  ///< V_g; this and `photons` by groups of pixels, of which a few are not heard
   };
   /// Unknown before there are two batches, and pairs of passes of one and of two batches.
   std::optional<Parts> parts() const;
