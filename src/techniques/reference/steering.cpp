@@ -81,9 +81,10 @@ bool Steering::reachesTarget() const {
 bool Steering::mustGatherOn(std::uint64_t rounds_of_batch, std::uint64_t rounds) const {
   if (knowsWhatPays()) return rounds_of_batch < 1;
   if (batch_passes_ < kMostBatchPasses) return rounds_of_batch < batch_passes_;
-  // The second and third four rounds are gathered from three batches each, by one, two and one of them.
+  // The second four rounds may be gathered from three batches, by one, two and one of them. What pays is known after
+  // two of these, unless the picture is still black.
   const std::uint64_t block = rounds / kMostBatchPasses, place = rounds % kMostBatchPasses;
-  return block == 1 || block == 2 ? place == 2 : place != 0;
+  return block == 1 ? place == 2 : place != 0;
 }
 
 bool Steering::mayGatherOn(std::uint64_t rounds_of_batch, std::uint64_t rounds) const {
